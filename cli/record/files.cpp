@@ -47,26 +47,32 @@ transport::Outcome<void> Files::join_ring() {
   if (options_.ring == 0) return {};
   auto there = numbered_files(name_);
   const std::string all = fmt::format("{}_*{}", name_.stem, name_.ending);
-  for (const auto& file : there)
+  for (const auto& file : there) {
     if (logs::is_being_written(file.path))
       return transport::Failure{fmt::format("another program records to {} now", file.path),
                                 "end it, or give another name"};
-  // What a recording leaves that was killed before its first frame takes the place of none.
-  std::erase_if(there, [](const auto& file) {
+    if (::access(file.path.c_str(), R_OK) != 0)  // it may be written all the same
+      return transport::Failure{fmt::format("cannot look whether another program records to {}: {}",
+                                            file.path, std::strerror(errno)),
+                                "give another name, or record as the user that has recorded it"};
+  }
+  if (there.empty()) return {};
+  number_ = there.back().number;
+  // What a recording leaves that was killed before its first frame takes the place of none, and goes first.
+  const auto full = std::stable_partition(there.begin(), there.end(), [](const auto& file) {
     std::error_code unreadable;
-    return std::filesystem::file_size(file.path, unreadable) == 0 && !unreadable && remove(file.path);
+    return std::filesystem::file_size(file.path, unreadable) == 0 && !unreadable;
   });
+  const auto holds = static_cast<std::size_t>(there.end() - full);
   // One more than the ring has is what a recording leaves that was cut off while it changed files.
-  if (!there.empty() && there.size() - 1 > options_.ring && !options_.overwrite)
+  if (holds > options_.ring + 1 && !options_.overwrite)
     return transport::Failure{fmt::format("{} files {} are there, and --ring {} would delete {} of them now",
-                                          there.size(), all, options_.ring, there.size() + 1 - options_.ring),
+                                          holds, all, options_.ring, holds + 1 - options_.ring),
                               "give another name, or --force to delete them"};
   for (const auto& file : there) kept_.push_back(file.path);
-  if (!there.empty()) {
-    number_ = there.back().number;
-    remark(fmt::format("the ring holds {} file{} of earlier recordings, {}; the oldest go first",
-                       there.size(), there.size() == 1 ? "" : "s", all));
-  }
+  if (holds != 0)
+    remark(fmt::format("the ring holds {} of earlier recordings, {}; the oldest go first",
+                       counted(holds, "file"), all));
   return {};
 }
 
@@ -78,7 +84,8 @@ transport::Outcome<std::string> Files::claim_next() {
     std::string path = options_.split.any() ? numbered(name_, number_)
                        : number_ == 1       ? options_.path
                                             : fmt::format("{}-{}{}", name_.stem, number_, name_.ending);
-    switch (claims() ? claim(path) : Claimed::ours) {
+    const auto devices = path == options_.path ? Devices::ours : Devices::taken;
+    switch (claims() ? claim(path, devices) : Claimed::ours) {
       case Claimed::ours:
         return path;
       case Claimed::failed:
@@ -196,7 +203,7 @@ bool Files::finish(Next next) {
   const bool done = file_->finish() && told;
   if (done && (entries_ != 0 || any_dropped))
     delete_oldest();
-  else if (done && next == Next::none)
+  else if (done && next == Next::none && !elsewhere_)
     delete_newest();
   for (std::size_t i = 0; i < log::losses; ++i) {
     const auto lost = static_cast<log::Lost>(i);

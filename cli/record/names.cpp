@@ -85,10 +85,11 @@ std::vector<NumberedFile> numbered_files(const FileName& name) {
   return files;
 }
 
-Claimed claim(const std::string& path) {
+Claimed claim(const std::string& path, Devices devices) {
   const host::Descriptor file{::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666)};
   if (file) return Claimed::ours;
   if (errno != EEXIST) return Claimed::failed;
+  if (devices == Devices::taken) return Claimed::taken;
   struct stat what {};
   if (::stat(path.c_str(), &what) < 0) return Claimed::failed;
   return S_ISREG(what.st_mode) || S_ISDIR(what.st_mode) ? Claimed::taken : Claimed::ours;

@@ -36,11 +36,13 @@ struct NumberedFile {
 };
 [[nodiscard]] std::vector<NumberedFile> numbered_files(const FileName& name);
 
-/// What a file is created for: a pipe or a device may be there already, an ordinary file may not.
 enum class Claimed : std::uint8_t { ours, taken, failed };
+/// Whose a pipe or a device is that has the name already: a user's word means it, a number that follows does
+/// not. An ordinary file is always another's.
+enum class Devices : bool { taken, ours };
 /// Creates `path` empty where nothing is there, so that no other program gets the name. `errno` says why it
 /// failed.
-[[nodiscard]] Claimed claim(const std::string& path);
+[[nodiscard]] Claimed claim(const std::string& path, Devices devices = Devices::ours);
 
 /// 0: not a size. "100MB", "64k", "1.5GiB"; k, M, G are powers of ten, with i powers of two.
 [[nodiscard]] std::uint64_t parse_size(std::string_view text);

@@ -295,8 +295,8 @@ class Run {
     CHECK(files.failure().what.empty() != disk_was_full_);
     const auto left = folder_->files();
     if (options_.ring != 0) CHECK(left.size() <= options_.ring);
-    CHECK(left.size() + files.deleted() ==
-          files.count() + (disk_was_full_ ? left.size() + files.deleted() - files.count() : 0));
+    const std::uint64_t all_files = left.size() + files.deleted() + (files.keeps_none() ? 1 : 0);
+    CHECK(all_files == files.count() + (disk_was_full_ ? all_files - files.count() : 0));
     std::map<std::string, std::uint64_t> found;
     std::map<std::string, std::uint64_t> dropped;
     std::map<std::string, std::uint32_t> last;

@@ -59,6 +59,10 @@ TEST_CASE("recordings: the files that are there, by number") {
   CHECK(claim(folder + "/new.log") == Claimed::taken);
   CHECK(claim(folder + "/drive_005.log") == Claimed::taken);
   CHECK(claim("/dev/null") == Claimed::ours);
+  CHECK(claim("/dev/null", Devices::taken) == Claimed::taken);
+  std::filesystem::create_symlink("nowhere", folder + "/link.log");
+  CHECK(claim(folder + "/link.log") == Claimed::failed);
+  CHECK(claim(folder + "/link.log", Devices::taken) == Claimed::taken);
   CHECK(claim(folder + "/none/new.log") == Claimed::failed);
   std::filesystem::remove_all(folder);
 }

@@ -269,9 +269,37 @@ class Recording(Case):
                 recorder.kill()
                 recorder.communicate(timeout=60)
             self.run_ring("bb." + ending)
-            self.assertEqual(self.ring("bb_"), kept[1:] + [f"bb_003.{ending}"])
+            self.assertEqual(self.ring("bb_"), kept[1:] + [f"bb_007.{ending}"])
             for name in self.ring("bb_"):
                 os.unlink(self.path(name))
+
+    def test_a_ring_leaves_alone_what_is_not_its_own(self):
+        self.start_sim()
+        for number in range(1, 6):
+            with open(self.path(f"bb_{number:03}.log"), "w") as file:
+                file.write("(1.000000) can0 123#\n")
+        open(self.path("bb_006.log"), "w").close()
+        before = self.ring("bb_")
+        self.run_tool("record", "-o", self.path("bb.log"), "--split", "1h", "--ring", "2", "-n", "1", code=1)
+        self.assertEqual(self.ring("bb_"), before)  # what is refused deletes nothing
+        recorder = self.record("-o", "own.log", "--split", "1h", "--ring", "2")
+        os.rename(self.path("own_001.log"), self.path("moved.log"))
+        with open(self.path("own_001.log"), "w") as file:
+            file.write("of another program")
+        _, err = self.interrupt(recorder)
+        self.assertIn("own_001.log was moved while it was recorded", err)
+        with open(self.path("own_001.log")) as file:
+            self.assertEqual(file.read(), "of another program")
+
+    def test_pipes_and_dead_links_with_the_next_number_are_passed_over(self):
+        self.start_sim()
+        self.run_tool("publish", "gyro", "10ms")
+        os.mkfifo(self.path("part_002.log"))
+        os.symlink("nowhere", self.path("part_003.log"))
+        recorder = self.record("-o", "part.log", "--split", "200ms")
+        self.wait_for_frames("part_004.log", 1)
+        _, err = self.interrupt(recorder)
+        self.assertEqual(recorder.returncode, 130, err)
 
     def run_ring(self, *name):
         recorder = self.record(*(("-o", *name) if name else ()), "--split", "1h", "--ring", "2", "-n", "1")
