@@ -37,7 +37,7 @@ base::Result<bool> OperatedBus::send(const can::Frame& frame) {
   switch (answer.kind) {
     case OperatorAnswer::Kind::silent:
       // Rest does no harm, and must reach the robot.
-      if (!is_rest(frame) || commanded_motors(index_, frame) == nullptr) return false;
+      if (!ends_motion(*index_.subject(frame.id, frame.format).topic, frame)) return false;
       past_it_ = true;
       return bus_->send(frame);
     case OperatorAnswer::Kind::no:

@@ -164,7 +164,7 @@ std::string Runner::pass_on(Caller& caller, std::string_view text) {
                           layout.dlc()),
               "is --spec that of the robot?");
   }
-  const bool rests = (topic.role == protocol::Role::drive || topic.timeout.count() != 0) && is_rest(*frame);
+  const bool rests = ends_motion(topic, *frame);
   if (!rests && !may_command(caller)) {
     ++commands_.refused;
     return no(fmt::format("operator {} is in {}, where {} may not command {}", tables.name,

@@ -7,8 +7,14 @@
 namespace ocm::cli {
 
 void BegunBehaviours::sent(const can::Frame& frame) {
-  const protocol::Topic* const topic = sensor_.commanded(index_, frame);
-  if (topic == nullptr) return;
+  const client::Subject subject = index_.subject(frame.id, frame.format);
+  const protocol::Topic* const topic = subject.topic;
+  if (frame.format != can::Format::base || !subject.frame || frame.dlc != subject.frame.layout().dlc())
+    return;
+  // A watchdog of its own ends it, as that of the motors does: else it needs no end.
+  if (topic->kind != protocol::Kind::actuator || topic->role == protocol::Role::drive ||
+      topic->timeout.count() == 0)
+    return;
   std::erase_if(all_, [topic](const Begun& each) { return each.topic == topic; });
   if (is_rest(frame)) return;
   Begun begun{topic, frame};

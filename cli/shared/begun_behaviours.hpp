@@ -8,8 +8,6 @@
 #include "ocm/can/frame.hpp"
 #include "ocm/client/frame_index.hpp"
 
-#include "cli/shared/behaviour_sensor.hpp"
-
 namespace ocm::cli {
 
 class BegunBehaviours {
@@ -20,7 +18,7 @@ class BegunBehaviours {
   };
 
   /// The catalogue must outlive it.
-  explicit BegunBehaviours(const protocol::Catalogue& catalogue) : sensor_(catalogue), index_(catalogue) {}
+  explicit BegunBehaviours(const protocol::Catalogue& catalogue) : index_(catalogue) {}
 
   /// Any frame, in the order in which they are sent.
   void sent(const can::Frame& frame);
@@ -31,7 +29,6 @@ class BegunBehaviours {
   void clear() noexcept { all_.clear(); }
 
  private:
-  BehaviourSensor sensor_;
   client::FrameIndex index_;
   std::vector<Begun> all_;
 };

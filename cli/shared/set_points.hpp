@@ -15,4 +15,10 @@ namespace ocm::cli {
   return set_point.data == can::Payload{};
 }
 
+/// Zeros that end a motion: of motors, or of what a board does by itself until a time has passed. No limit
+/// and no permission is asked for them.
+[[nodiscard]] inline bool ends_motion(const protocol::Topic& topic, const can::Frame& set_point) {
+  return (topic.role == protocol::Role::drive || topic.timeout.count() != 0) && is_rest(set_point);
+}
+
 }  // namespace ocm::cli

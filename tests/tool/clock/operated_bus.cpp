@@ -184,7 +184,7 @@ TEST_CASE("operated bus: what waits is that of the bus and of the operator toget
   CHECK(bench.bus->delivery().pending == 1);
 }
 
-TEST_CASE("operated bus: when the operator has ended only rest of the motors goes past it") {
+TEST_CASE("operated bus: when the operator has ended only the end of a motion goes past it") {
   Bench bench;
   bench.answers = {"ok\n201#1027000000000000\n"};
   CHECK(bench.sends("201#1027000000000000"));
@@ -197,7 +197,10 @@ TEST_CASE("operated bus: when the operator has ended only rest of the motors goe
   CHECK_FALSE(bench.sends("23C#000000"));
   CHECK(bench.on_bus().empty());
   CHECK(bench.sends("201#0000000000000000"));
-  CHECK(bench.on_bus() == Texts{"201#0000000000000000"});
+  CHECK_FALSE(bench.sends("20B#A08601000000E803"));
+  CHECK(bench.sends("20B#0000000000000000"));
+  CHECK(bench.sends("229#0000"));
+  CHECK(bench.on_bus() == Texts{"201#0000000000000000", "20B#0000000000000000", "229#0000"});
   CHECK(bench.bus->delivery().obstruction.what.empty());
   CHECK_FALSE(bench.bus->commands_itself(frame("201#1027000000000000")).again_and_again);
 }

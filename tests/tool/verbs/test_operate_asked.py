@@ -267,6 +267,23 @@ class Asked(Operating):
         self.assertEqual(asked.returncode, 0, err)
         self.assertIn("halt", out)
 
+    def test_an_operator_that_is_stopped_or_killed_leaves_no_travel_behind(self):
+        self.start_sim()
+        document = json.loads(json.dumps(GUARDED))
+        document["configurations"][0]["commanders"] = ["travel"]
+        for number in (signal.SIGSTOP, signal.SIGKILL):
+            with self.subTest(signal=number):
+                operator = self.operate(document=document)
+                listener = self.raw_frames("travel")
+                travel = self.start("travel", "90cm", "--speed", "2cm/s")
+                self.event(operator, "commanded")
+                operator.send_signal(number)
+                self.interrupt(travel)
+                self.assertEqual([frame for _, frame in self.frames(listener)][-1], "20B#0000000000000000")
+                waiting.until(lambda: json.loads(self.run_tool("once", "behaviour")[0])["fields"]["active"] in (0, "none"), "it has ended")
+                operator.kill()
+                operator.wait()
+
     def test_a_request_of_a_program_that_has_left_is_not_met(self):
         # It was in a hurry, found the operator stopped, and has set the motors to zero past it.
         self.start_sim()
