@@ -51,9 +51,8 @@ std::string& last_error() {
   return text;
 }
 void note_error(int, const char* line) {
-  std::string_view text{line};
-  while (!text.empty() && (text.back() == '\n' || text.back() == ' ')) text.remove_suffix(1);
-  last_error() = text;
+  const std::string_view text{line};
+  last_error() = text.substr(0, text.find_last_not_of("\n ") + 1);  // npos + 1 is 0
 }
 
 std::string header(lws* wsi, lws_token_indexes which) {

@@ -34,10 +34,14 @@ constexpr base::Duration silence = std::chrono::seconds{2};
 /// The topics that are waited for; none: any frame will do.
 std::vector<const protocol::Topic*> awaited_topics(const protocol::Catalogue& catalogue, const Choice& choice,
                                                    const ListenOptions& options) {
-  auto topics = choice.topics();
-  if (const auto selection = Selection::of(catalogue, options.display.fields); topics.empty() && selection)
-    for (const ChosenField& field : selection->fields()) topics.push_back(field.topic);
-  return topics;
+  const auto& topics = choice.topics();
+  const auto selection = Selection::of(catalogue, options.display.fields);
+  if (!selection || selection->everything()) return topics;
+  std::vector<const protocol::Topic*> shown;
+  for (const ChosenField& field : selection->fields())
+    if (topics.empty() || std::find(topics.begin(), topics.end(), field.topic) != topics.end())
+      shown.push_back(field.topic);
+  return shown;
 }
 
 void listen(Session& session, const ListenOptions& options, int& exit_code) {
@@ -64,7 +68,8 @@ void listen(Session& session, const ListenOptions& options, int& exit_code) {
   const auto end = [&] { return std::min(begin + timeout, last + idle); };
   const auto awaited = awaited_topics(catalogue, choice, options);
   const bool any_will_do = awaited.empty() || !options.choice.conditions.empty();  // not all meet them
-  bool any = !options.choice.filters.empty() || !options.choice.groups.empty();    // who sends these?
+  const bool by_identifier = !options.choice.filters.empty() || !options.choice.groups.empty();
+  bool any = awaited.empty() && by_identifier;  // who sends these?
   const auto take = [&](const transport::ReceivedAny& received) {
     const log::Entry entry{received.time, received.frame};
     any |= any_will_do;

@@ -106,7 +106,8 @@ class OnTheBus(Case):
         self.start_sim()
         self.run_tool("publish", "odom", "100ms")
         hint = "a sensor is silent until it is asked, as by `amiroctl publish gyroscope 500ms`"
-        for words, told in ((("gyro",), True), (("--field", "gyro.z"), True), (("--field", "odom.x"), False), ((), False),
+        for words, told in ((("gyro",), True), (("--field", "gyro.z"), True), (("gyro", "--filter", "600:700"), True),
+                            (("--sender", "di_wheel_drive", "--field", "gyro.z"), True), (("--field", "odom.x"), False), ((), False),
                             (("--filter", "600:700"), False), (("--where", "odom.velocity.x>100"), False)):
             with self.subTest(words=words):
                 _, err = self.run_tool("listen", *words, "--timeout", "2100ms")
