@@ -114,6 +114,7 @@ class Behaviour {
       : options_(&options),
         catalogue_(&catalogue),
         topic_(&topic),
+        motors_(motors_of(catalogue)),
         index_(catalogue),
         watch_(watch_of(options, catalogue)),
         bus_(open_to_command(session, "behave")),
@@ -130,7 +131,7 @@ class Behaviour {
     const bool early = over();
     const std::string how = how_it_ended();
     const bool taken = end();
-    const bool could_answer = timeline_.has_asked() || Clock::now() - begun_ >= longest_silence;
+    const bool could_answer = (watch_ && timeline_.has_asked()) || Clock::now() - begun_ >= longest_silence;
     if (unheard() && could_answer && goes_on_ && taken) fail(unanswered());
     if (early) fail({fmt::format("behave: {} was ended: {}", options_->which, how), remedy_for(how)});
     if (!goes_on_) return exit_code_after_interrupt(exit_success);
@@ -138,6 +139,12 @@ class Behaviour {
   }
 
  private:
+  static const protocol::Topic* motors_of(const protocol::Catalogue& catalogue) {
+    for (const protocol::Topic& topic : catalogue.topics)
+      if (topic.role == protocol::Role::drive) return &topic;
+    return nullptr;
+  }
+
   /// What the wheels' board does it reports; another board's commands to the wheels are what can be seen of
   /// it.
   static std::optional<BehaviourWatch> watch_of(const BehaveOptions& options,
@@ -150,10 +157,11 @@ class Behaviour {
     if (watch_) watch_->take(received);
     const auto subject = index_.subject(received.frame.id, received.frame.format);
     if (subject.topic == topic_ && subject.frame && is_rest(received.frame)) ended_by_another_ = true;
+    if (subject.topic == nullptr || subject.topic->role != protocol::Role::drive) return;
     // The board follows without a word of the motors; one of another program ends it, and the next repetition
     // would begin it again before the report of its end.
-    if (watch_ && subject.topic != nullptr && subject.topic->role == protocol::Role::drive)
-      ended_by_another_ = true;
+    if (watch_) ended_by_another_ = true;
+    commands_motors_ = true;
   }
 
   /// As long as it takes to hear other programs. False: a signal came first.
@@ -171,6 +179,7 @@ class Behaviour {
     if (watch_ && (!watch_->heard() || timeline_.has_asked())) ask_progress();
     if (watch_) watch_->begin();
     ended_by_another_ = false;
+    commands_motors_ = false;
     timeline_.carry_out(command);
   }
 
@@ -181,12 +190,12 @@ class Behaviour {
     auto heard = Clock::now();  // or asked
     while (goes_on_ && !over() && Clock::now() < end) {
       goes_on_ = timeline_.wait(std::min(end, Clock::now() + std::chrono::milliseconds{20}));
-      if (!watch_) continue;
       if (!told && unheard() && Clock::now() - begun_ >= told_after) {
         told = true;
         const auto failure = unanswered();
         remark(fmt::format("{}; {}", failure.what, failure.remedy));
       }
+      if (!watch_) continue;
       heard = std::max(heard, watch_->last());
       if (!goes_on_ || Clock::now() - heard < longest_silence) continue;
       ask_progress();  // a stop of everything ends this stream, too
@@ -203,8 +212,11 @@ class Behaviour {
   }
 
   [[nodiscard]] bool over() const { return ended_by_another_ || (watch_ && watch_->over()); }
-  /// Whether the board should have said something of it, and has not.
-  [[nodiscard]] bool unheard() const { return watch_ && !answered_ && !watch_->heard(); }
+  /// Whether the board should have said something of it, or commanded the motors of another, and has not.
+  [[nodiscard]] bool unheard() const {
+    if (watch_) return !answered_ && !watch_->heard();
+    return motors_ != nullptr && motors_->board != topic_->board && !commands_motors_;
+  }
 
   [[nodiscard]] std::string how_it_ended() const {
     if (watch_ && watch_->is_replaced()) return "replaced by " + watch_->commanded();
@@ -213,9 +225,10 @@ class Behaviour {
 
   [[nodiscard]] transport::Failure unanswered() const {
     const auto board = catalogue_->board_name(*topic_);
-    return {
-        fmt::format("behave: no {} came, so nothing shows that {} has done it", watch_->sensor().name, board),
-        fmt::format("is board {} powered and on {}? See `amiroctl doctor`", board, bus_->name())};
+    const std::string missing =
+        watch_ ? std::string{watch_->sensor().name} : fmt::format("set point of {}", motors_->name);
+    return {fmt::format("behave: no {} came, so nothing shows that {} has done it", missing, board),
+            fmt::format("is board {} powered and on {}? See `amiroctl doctor`", board, bus_->name())};
   }
 
   void ask_progress() {
@@ -233,6 +246,7 @@ class Behaviour {
   const BehaveOptions* options_;
   const protocol::Catalogue* catalogue_;
   const protocol::Topic* topic_;
+  const protocol::Topic* motors_;
   client::FrameIndex index_;
   std::optional<BehaviourWatch> watch_;
   std::unique_ptr<transport::Bus> bus_;
@@ -242,6 +256,7 @@ class Behaviour {
   bool asked_ = false;     ///< for what the board says of it
   bool goes_on_ = true;    ///< no signal came
   bool ended_by_another_ = false;
+  bool commands_motors_ = false;  ///< the board, as far as can be seen; or another program
 };
 
 void behave(Session& session, const BehaveOptions& options, int& exit_code) {

@@ -121,6 +121,14 @@ class Behave(Case):
             self.assertTrue(err.endswith("amiroctl: behave: no behaviour came, so nothing shows that di_wheel_drive has done it\n"
                                          "          is board di_wheel_drive powered and on sim? See `amiroctl doctor`\n"), err)
 
+    def test_a_board_that_would_command_the_motors_and_is_off(self):
+        self.start_sim("--without", "power_management")
+        for which in ("avoid", "home"):
+            _, err = self.run_tool("behave", which, "--for", "700ms", code=1)
+            self.assertTrue(err.endswith("amiroctl: behave: no set point of motors came, so nothing shows that power_management has done it\n"
+                                         "          is board power_management powered and on sim? See `amiroctl doctor`\n"), err)
+        self.run_tool("behave", "avoid", "--for", "100ms")  # too short to tell
+
     def test_a_board_that_is_off_is_told_of_while_it_waits(self):
         self.start_sim("--without", "di_wheel_drive")
         behave = self.start("behave", "follow")
