@@ -185,13 +185,19 @@ class SeenTopics {
     }
   }
 
-  /// Of each topic, off where it is not in the log.
-  [[nodiscard]] std::vector<Rate> rates(Paces& paces, std::vector<std::string>& remarks) const {
+  /// Of each topic, off where it is not in the log; remarks on those for which no rate is given.
+  [[nodiscard]] std::vector<Rate> rates(std::span<const Rate> given, Paces& paces,
+                                        std::vector<std::string>& remarks) const {
     std::vector<Rate> rates;
+    std::vector<std::string> idle;
     for (const auto& topic : catalogue_->topics) {
       if (topic.is_message()) continue;
       const auto its = seen_.find(&topic);
-      rates.push_back(its == seen_.end() ? Rate{} : rate(topic, its->second, paces, remarks));
+      const bool is_given = std::any_of(given.begin(), given.end(), [&](const Rate& rate) {
+        return words::find_topic(*catalogue_, rate.name) == &topic || words::is_in_group(topic, rate.name);
+      });
+      rates.push_back(its == seen_.end() ? Rate{}
+                                         : rate(topic, its->second, paces, is_given ? idle : remarks));
       rates.back().name = topic.name;
       rates.back().place = "the log";
       rates.back().off = its == seen_.end() || !its->second.sent;
@@ -236,9 +242,9 @@ class SeenTopics {
     if (topic.kind != protocol::Kind::actuator) return rate;
     const std::int64_t shortest = its.distances.shortest();
     rate.period = base::Duration{shortest > 0 ? shortest : 1'000'000'000};
-    remarks.push_back(
-        fmt::format("{} has no period of its own: the shortest distance in the log, {}, counts.", topic.name,
-                    time_text(rate.period.count())));
+    remarks.push_back(fmt::format("{} has no period of its own{} {}{} counts.", topic.name,
+                                  shortest > 0 ? ": the shortest distance in the log," : ", and came once:",
+                                  time_text(rate.period.count()), shortest > 0 ? "," : ""));
     const bool drives = topic.role == protocol::Role::drive;
     paces[its.key] = drives ? its.distances.pace() : Pace{Grid::none, 0};
     return rate;
@@ -272,7 +278,7 @@ BusSet set_of(const Log& log, const protocol::Catalogue& catalogue, const spec::
   SeenTopics seen{catalogue};
   for (const Arrival& arrival : log.arrivals) seen.take(arrival);
   std::vector<std::string> remarks;
-  std::vector<Rate> all = seen.rates(paces, remarks);
+  std::vector<Rate> all = seen.rates(given, paces, remarks);
   for (Rate& rate : given) {
     seen.complete(rate, paces);
     all.push_back(std::move(rate));

@@ -651,6 +651,21 @@ a,31,10000000,100000,9673333,10100000,,,800000,false
 b,15,20000000,20000000,20000000,20000000,0,136000,300000,true
 """)
 
+    def test_remarks_are_about_topics_without_a_given_rate(self):
+        frames = [(0, "208#01140000"), (1000, "208#01320000"), (2000, "23C#FF0000")]
+        frames += [(3000 + i * 20000, "608#000000000000") for i in range(50)]
+        frames += [(5000 + i * 100000, "201#1027000000000000") for i in range(10)]
+        log = self.log(frames)
+        remarks = ("gyroscope was asked for every 20ms and every 50ms: the shorter one counts.\n",
+                   "motors has no period of its own: the shortest distance in the log, 100ms, counts.\n",
+                   "led_1 has no period of its own, and came once: 1s counts.\n")
+        out, _ = self.run_tool("analyse", "trace", log)
+        for remark in remarks:
+            self.assertIn(remark, out)
+        out, _ = self.run_tool("analyse", "trace", log, "--rates", "gyro=20ms", "--rates", "motors=100ms", "--rates", "led_1=1s")
+        for remark in remarks:
+            self.assertNotIn(remark, out)
+
     def test_messages_of_a_spec_are_the_set(self):
         car = os.path.join(os.environ["OCM_SOURCE_DIR"], "examples", "small_car.dbc")
         log = self.log([(i * 10000, "100#0000000000000000") for i in range(100)] + [(5000 + i * 20000, "110#00000000") for i in range(50)])
