@@ -12,6 +12,7 @@
 #include "cli/command/commanding.hpp"
 #include "cli/command/operated_bus.hpp"
 #include "cli/command/timeline.hpp"
+#include "cli/output/printer.hpp"
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/messages.hpp"
 #include "cli/shared/outgoing.hpp"
@@ -104,7 +105,7 @@ class Travel {
     if (!goes_on_) return exit_code_after_interrupt(exit_success);
     if (!taken) return exit_failure;  // a board has refused it, which was said
     if (silent_ || !watch_.was_active() || watch_.ended() != "arrived") fail(not_arrived());
-    fmt::print("arrived; {} are left\n", watch_.left());
+    write_out(fmt::format("arrived; {} are left\n", watch_.left()));
     return exit_success;
   }
 

@@ -79,6 +79,20 @@ class StuckOutput(Case):
                 self.assertEqual(process.wait(timeout=60), 128 + signal.SIGINT)
                 os.close(reader)
 
+    def test_a_travel_that_has_arrived(self):
+        self.start_sim()
+        reader, writer = self.full_pipe()
+        listener = self.start("listen", "behaviour", "--field", "behaviour.ended", "--timeout", "60s")
+        self.assertIn("bus: sim", listener.stderr.readline())
+        process = self.start_to(writer, "--bus", "sim", "travel", "1cm")
+        os.close(writer)
+        waiting.until(lambda: '"arrived"' in listener.stdout.readline() or process.poll() is not None, "the end of the travel")
+        waiting.until_asleep(process.pid)
+        time.sleep(0.3)  # its last words to the board
+        process.send_signal(signal.SIGINT)
+        self.assertEqual(process.wait(timeout=60), 128 + signal.SIGINT)
+        os.close(reader)
+
     def test_messages_that_cannot_go_hold_up_no_robot(self):
         script = os.path.join(self.folder, "tour.script")
         with open(script, "w", encoding="utf-8") as file:
