@@ -65,7 +65,7 @@ transport::Outcome<void> Files::join_ring() {
   });
   const auto holds = static_cast<std::size_t>(there.end() - full);
   // One more than the ring has is what a recording leaves that was cut off while it changed files.
-  if (holds > options_.ring + 1 && !options_.overwrite)
+  if (holds != 0 && holds - 1 > options_.ring && !options_.overwrite)
     return transport::Failure{fmt::format("{} files {} are there, and --ring {} would delete {} of them now",
                                           holds, all, options_.ring, holds + 1 - options_.ring),
                               "give another name, or --force to delete them"};

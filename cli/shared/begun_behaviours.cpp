@@ -11,7 +11,8 @@ void BegunBehaviours::sent(const can::Frame& frame) {
   const protocol::Topic* const topic = subject.topic;
   if (frame.format != can::Format::base || !subject.frame || frame.dlc != subject.frame.layout().dlc())
     return;
-  // A watchdog of its own ends it, as that of the motors does: else it needs no end.
+  // Motors are set to rest by who holds them; what has no timeout, such as a light, stays as it was
+  // commanded.
   if (topic->kind != protocol::Kind::actuator || topic->role == protocol::Role::drive ||
       topic->timeout.count() == 0)
     return;
