@@ -60,9 +60,9 @@ base::Result<bool> OperatedBus::send_any(const can::AnyFrame& frame) {
   return bus_->send_any(frame);
 }
 
-void OperatedBus::tell_limits(std::string_view limits) {
-  if (limits.empty() || !told_limits_.emplace(limits).second) return;
-  remark(fmt::format("{}: {} limits {}", verb_, link_->who(), limits));
+void OperatedBus::tell_limits(std::string_view text) {
+  if (text.empty() || !told_limits_.emplace(text).second) return;
+  remark(fmt::format("{}: {} limits {}", verb_, link_->who(), text));
 }
 
 bool OperatedBus::is_echo(const can::Frame& frame) {

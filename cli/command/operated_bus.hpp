@@ -54,7 +54,7 @@ class OperatedBus final : public transport::Bus, public Guarded {
   [[nodiscard]] bool commands(const can::Frame& frame) const;
   [[nodiscard]] bool is_echo(const can::Frame& frame);
   /// Says what the operator has changed, each once.
-  void tell_limits(std::string_view limits);
+  void tell_limits(std::string_view text);
 
   struct Echo {
     can::Frame frame;
