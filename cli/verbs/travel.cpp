@@ -98,8 +98,13 @@ class Travel {
   /// The exit code. Leaves through cli::fail where it did not arrive.
   [[nodiscard]] int carry_out(const can::Frame& set_point) {
     if (!listen_first()) return exit_code_after_interrupt(exit_success);
-    begin(set_point);
-    follow();
+    try {
+      begin(set_point);
+      follow();
+    } catch (const Exit&) {  // the error is said
+      give_up();
+      throw;
+    }
     const bool taken = end();
     if (watch_.is_replaced() && goes_on_) fail(replaced());
     if (!goes_on_) return exit_code_after_interrupt(exit_success);
@@ -161,6 +166,16 @@ class Travel {
     timeline_.carry_out_once(end);
     if (silent_) timeline_.leave_silence_to_caller();
     return timeline_.finish();
+  }
+
+  /// What was not taken may have been sent all the same: an operator may die between frame and answer.
+  void give_up() {
+    if (bus_->state() == transport::BusState::closed) return;
+    client::Command end;
+    end.frames = {client::set_point(*topic_, {}, options_->priority)};
+    timeline_.forgive_a_stop();
+    timeline_.carry_out_once(end);
+    if (timeline_.finish()) remark("travel: zeros were sent, which end it");
   }
 
   [[nodiscard]] transport::Failure replaced() const {
