@@ -149,7 +149,9 @@ std::string left_by(std::span<const words::Step> steps, const protocol::Catalogu
   if (any([](const client::Command& each) { return each.hold.has_value(); }))
     left.emplace_back("the motors were set to zero");
   if (!ended.all().empty()) left.push_back(ended.names() + " ended");
-  if (const auto names = repeated_after(steps, catalogue); !names.empty())
+  auto names = repeated_after(steps, catalogue);
+  for (const auto& each : ended.all()) std::erase(names, each.topic->name);
+  if (!names.empty())
     left.push_back(fmt::format("{} {} no longer sent, and what was sent last holds", fmt::join(names, ", "),
                                names.size() == 1 ? "is" : "are"));
   if (any([](const client::Command& each) { return each.answers != nullptr; }))

@@ -2,6 +2,7 @@
 
 import json
 import signal
+import subprocess
 import time
 
 from harness import Case, main, waiting
@@ -120,6 +121,21 @@ class Behave(Case):
             _, err = self.run_tool("behave", "follow", *arguments, code=1)
             self.assertTrue(err.endswith("amiroctl: behave: no behaviour came, so nothing shows that di_wheel_drive has done it\n"
                                          "          is board di_wheel_drive powered and on sim? See `amiroctl doctor`\n"), err)
+
+    def test_a_script_that_is_interrupted_ends_what_it_repeats(self):
+        self.start_sim()
+        listener = self.listen("avoid", "--commands")
+        run = self.start("run", "-", stdin=subprocess.PIPE)
+        run.stdin.write("0s set avoid speed=10cm/s --every 100ms\n")
+        run.stdin.close()
+        run.stdin = None
+        self.assertIn("E803", listener.stdout.readline())
+        _, err = self.interrupt(run)
+        self.assertEqual(run.returncode, 130, err)
+        self.assertTrue(err.endswith("interrupted: avoid was ended\n"), err)
+        self.settle()
+        out, _ = self.interrupt(listener)
+        self.assertEqual(self.objects(out)[-1]["data"], "0000")
 
     def test_a_board_that_would_command_the_motors_and_is_off(self):
         self.start_sim("--without", "power_management")
