@@ -189,7 +189,7 @@ class SeenTopics {
   [[nodiscard]] std::vector<Rate> rates(std::span<const Rate> given, Paces& paces,
                                         std::vector<std::string>& remarks) const {
     std::vector<Rate> rates;
-    std::vector<std::string> idle;
+    std::vector<std::string> unsaid;
     for (const auto& topic : catalogue_->topics) {
       if (topic.is_message()) continue;
       const auto its = seen_.find(&topic);
@@ -197,7 +197,7 @@ class SeenTopics {
         return words::find_topic(*catalogue_, rate.name) == &topic || words::is_in_group(topic, rate.name);
       });
       rates.push_back(its == seen_.end() ? Rate{}
-                                         : rate(topic, its->second, paces, is_given ? idle : remarks));
+                                         : rate(topic, its->second, paces, is_given ? unsaid : remarks));
       rates.back().name = topic.name;
       rates.back().place = "the log";
       rates.back().off = its == seen_.end() || !its->second.sent;
@@ -242,9 +242,12 @@ class SeenTopics {
     if (topic.kind != protocol::Kind::actuator) return rate;
     const std::int64_t shortest = its.distances.shortest();
     rate.period = base::Duration{shortest > 0 ? shortest : 1'000'000'000};
-    remarks.push_back(fmt::format("{} has no period of its own{} {}{} counts.", topic.name,
-                                  shortest > 0 ? ": the shortest distance in the log," : ", and came once:",
-                                  time_text(rate.period.count()), shortest > 0 ? "," : ""));
+    const std::string counts = time_text(rate.period.count());
+    remarks.push_back(
+        shortest > 0
+            ? fmt::format("{} has no period of its own: the shortest distance in the log, {}, counts.",
+                          topic.name, counts)
+            : fmt::format("{} has no period of its own, and came once: {} counts.", topic.name, counts));
     const bool drives = topic.role == protocol::Role::drive;
     paces[its.key] = drives ? its.distances.pace() : Pace{Grid::none, 0};
     return rate;

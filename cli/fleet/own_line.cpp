@@ -69,8 +69,8 @@ void OwnLine::finish() {
 }
 
 void OwnLine::flush(base::Duration limit) {
-  constexpr int fewest =
-      20;  // after a stop of this program the limit is over, and the dongle has had no time
+  // After a stop of this program the limit is over, and the dongle has had no time.
+  constexpr int fewest = 20;
   const base::Time end = line_time() + limit;
   server_.expire(line_time());
   const auto rest = [this] {
