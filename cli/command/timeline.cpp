@@ -261,6 +261,11 @@ void Timeline::abandon(std::string what, std::string remedy) {
   fail({fmt::format("{}: {}; {}", verb_, what, now), std::move(remedy)});
 }
 
+void Timeline::heed_another() {
+  if (others_ == Others::refused && (other_.has_stopped() || (held_ && other_.has_begun_too())))
+    end_for_another();
+}
+
 void Timeline::end_for_another() {
   if (!other_.has_stopped())
     abandon(fmt::format("another program began to command {} in the same moment: {}", other_.motors(),
@@ -400,7 +405,11 @@ bool Timeline::wait(Clock::time_point until) {
     UnhurriedMessages::write();
     const auto now = look_at_clock();
     if (held_ && now >= held_->end) end_of_hold(now);
-    if (held_ && now >= held_->next) repeat(now);
+    if (held_ && now >= held_->next) {
+      take_what_waits();  // a stop among it came before this set point
+      heed_another();
+      repeat(look_at_clock());
+    }
     repeat_due(now);
     broadcast_due(now);
     if (now >= until) return true;
@@ -416,8 +425,7 @@ bool Timeline::wait(Clock::time_point until) {
       tell_unsent();
       outgoing_.leave_gone();
     }
-    if (others_ == Others::refused && (other_.has_stopped() || (held_ && other_.has_begun_too())))
-      end_for_another();
+    heed_another();
   }
 }
 

@@ -150,8 +150,9 @@ class Timeline {
   [[noreturn]] void abandon(std::string what, std::string remedy);
   /// Ends the hold because this program did not run for so long.
   [[noreturn]] void end_for_a_stop(Clock::duration lasting);
-  /// Ends the command, a hold or not, because another program stopped the robot that it has set in motion, or
-  /// began to hold it in the same moment.
+  /// Ends the command, a hold or not, where another program has stopped the robot that it has set in motion,
+  /// or began to hold it in the same moment.
+  void heed_another();
   [[noreturn]] void end_for_another();
   /// Whether the set point that came last is of the operator that guards the bus.
   [[nodiscard]] Guarded::Own commanded_by_operator();

@@ -314,6 +314,29 @@ TEST_CASE("drive: of two that begin within the time in which neither hears the o
   }
 }
 
+TEST_CASE("drive: no set point follows a stop that came before it was due, whatever came before the stop") {
+  const auto stop_at = World::start + 1s;
+  World world{1};
+  world.stop(stop_at, 120ms);
+  PlayedBus::Conditions conditions;
+  for (const Duration each : {10ms, 20ms, 30ms})
+    conditions.incoming.push_back({stop_at + each, {.id = 0x123, .dlc = 8}});
+  can::Frame zero = drive(0s).frames.front();
+  zero.data = {};
+  conditions.incoming.push_back({stop_at + 40ms, zero});
+  PlayedBus bus{world, conditions};
+  const Leaving left = leaving([&] {
+    Timeline timeline{bus, amiro::catalogue, "drive", Timeline::Others::refused, cli::Confirm::no, {}};
+    timeline.carry_out(drive(0s));
+    static_cast<void>(timeline.wait_for_end());
+  });
+  CHECK(left.code == cli::exit_failure);
+  CHECK_THAT(left.text, Catch::Contains("drive: another program has set the motors to zero"));
+  REQUIRE(bus.sent().size() > 10);
+  for (const auto& each : bus.sent()) CHECK((each.taken < stop_at || cli::is_rest(each.frame)));
+  CHECK(cli::is_rest(bus.sent().back().frame));
+}
+
 /// A bus from which no frame leaves for so long, from the beginning.
 PlayedBus::Conditions stuck_for(Duration lasting) {
   PlayedBus::Conditions conditions;
