@@ -387,23 +387,34 @@ class Pictures(Case):
         words = done.stdout.splitlines()
         self.assertEqual(words, ["analyse", "bus", "--svg", str(self.tree / "docs" / "images" / "worst_case.svg")], done.stderr)
 
-    def test_the_simulator_ends_with_it(self):
+    SIGNALS = ((signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGHUP, 129))
+
+    def ends(self, number, code, at_once):
+        """Of a signal while the simulator runs, or `at_once` as it starts."""
         started = self.tree / "started"
+        started.unlink(missing_ok=True)
         self.stand_in("amiroctl", f"""
             [ $1 = sim ] || exec sleep 600
+            trap 'exit 130' INT  # bash goes on where a command of its script takes the signal
+            {f"kill -{int(number)} $PPID" if at_once else ""}
             mkdir $XDG_RUNTIME_DIR/ocm; touch $XDG_RUNTIME_DIR/ocm/sim.sock; echo $$ >{started}; exec sleep 600""", self.tree / "build")
-        for number, code in ((signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGHUP, 129)):
-            with self.subTest(signal=number):
-                started.unlink(missing_ok=True)
-                process = self.start("pictures", "top")
-                waiting.until(lambda: started.exists() and started.read_text(encoding="utf-8").endswith("\n"), "the simulator runs")
-                process.send_signal(number)
-                self.assertEqual(process.wait(timeout=60), code)
-                self.assertFalse(Ended.runs(int(started.read_text(encoding="utf-8"))))
-                with contextlib.suppress(ProcessLookupError):  # the stand-in of a command, which would have ended by itself
-                    os.killpg(process.pid, signal.SIGKILL)
-                process.communicate(timeout=60)
-                self.assertEqual([path.name for path in self.programs.glob("ocm-*")], [], "and nothing is left")
+        process = self.start("pictures", "top")
+        if not at_once:
+            waiting.until(lambda: started.exists() and started.read_text(encoding="utf-8").endswith("\n"), "the simulator runs")
+            process.send_signal(number)
+        self.assertEqual(process.wait(timeout=60), code)
+        if started.exists():  # not where it was ended before
+            self.assertFalse(Ended.runs(int(started.read_text(encoding="utf-8"))))
+        with contextlib.suppress(ProcessLookupError):  # the stand-in of a command, which would have ended by itself
+            os.killpg(process.pid, signal.SIGKILL)
+        process.communicate(timeout=60)
+        self.assertEqual([path.name for path in self.programs.glob("ocm-*")], [], "and nothing is left")
+
+    def test_the_simulator_ends_with_it(self):
+        for number, code in self.SIGNALS:
+            for at_once in (False, True):
+                with self.subTest(signal=number, at_once=at_once):
+                    self.ends(number, code, at_once)
 
 
 class Dates(Case):
