@@ -14,7 +14,7 @@ import unittest
 import waiting
 
 MOST_LATE = 0.05  # s, of a thread that wants to wake
-WINDOW = 1.0  # s, over which a program's waits for a processor are added up
+WINDOW = 1.0  # s, over which a program's waits for a processor, and for the disk, are added up
 LOOKS = 30
 MOST_TAKEN = 0.05  # of all processors, by what this test did not start; 0.01 on an idle machine
 
@@ -40,6 +40,7 @@ class Spare:
 
     def __enter__(self):
         self.late = 0.0
+        self.blocked = collections.Counter()
         self.done = threading.Event()
         self.begin = (*processor_times(), own_time())
         self.thread = threading.Thread(target=self.watch, daemon=True)
@@ -66,13 +67,17 @@ class Spare:
             if not over:
                 self.late = max(self.late, time.monotonic() - begin - 0.01)
             if over or not looks or begin - looks[-1][0] >= WINDOW / LOOKS:
-                looks.append((begin, self.waits()))
+                looks.append((begin, self.waits(begin - looks[-1][0] if looks else 0.0)))
                 before = looks[0][1]
                 self.late = max(self.late, *(now - before.get(task, 0.0) for task, now in looks[-1][1].items()), 0.0)
 
-    def waits(self):
-        """Of each thread of the programs."""
-        return {(program.pid, task): wait for program in self.programs() for task, wait in program.starved_threads().items()}
+    def waits(self, since):
+        """Of each thread of the programs, in s so far; who waits for the disk now has done so since the last look."""
+        waits = {}
+        for program in self.programs():
+            self.blocked.update({(program.pid, task): since for task in program.blocked_threads()})
+            waits |= {(program.pid, task): wait for task, wait in program.starved_threads().items()}
+        return {thread: wait + self.blocked[thread] for thread, wait in waits.items()}
 
     def enough(self):
         return self.late < MOST_LATE and self.taken < MOST_TAKEN

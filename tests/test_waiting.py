@@ -5,6 +5,7 @@ import sys
 import tempfile
 import unittest
 
+import realtime
 import waiting
 
 
@@ -18,6 +19,40 @@ class Printed(unittest.TestCase):
                 looks += 1
             self.assertEqual(waiting.printed(file), "".join(f"{i}\n" for i in range(20000)))
         self.assertGreater(looks, 3)
+
+
+class Played:
+    """A program whose only thread waits for the disk, from its third look on."""
+    pid = 1
+
+    def __init__(self):
+        self.looks = 0
+
+    def blocked_threads(self):
+        self.looks += 1
+        return {"1"} if self.looks > 2 else set()
+
+    def starved_threads(self):
+        return {"1": 0.0}
+
+
+class HeldUp(unittest.TestCase):
+    def test_who_waits_for_the_disk_is_late(self):
+        program = Played()
+        with realtime.Spare(lambda: [program]) as spare:
+            waiting.until(lambda: program.looks > 20, "it is looked at")
+        self.assertGreater(spare.late, 0.3)
+        with realtime.Spare(lambda: [Played()]) as spare:  # each of which is looked at once
+            waiting.until(lambda: spare.begin[1] + 1 < realtime.processor_times()[1], "the machine has run")
+        self.assertLess(spare.late, 0.3)
+
+    def test_states_of_threads(self):
+        with subprocess.Popen(["sleep", "60"]) as program:
+            waiting.until(lambda: list(waiting.thread_states(program.pid).values()) == ["S"], "it sleeps")
+            self.assertEqual(waiting.blocked_threads(program.pid), set())
+            self.assertTrue(waiting.asleep(program.pid))
+            program.kill()
+        self.assertEqual(waiting.thread_states(program.pid), {})
 
 
 if __name__ == "__main__":

@@ -14,17 +14,28 @@ def until(holds, what, limit=30):
         time.sleep(0.01)
 
 
-def asleep(pid):
-    """Whether all threads of a process wait, or are stopped. One that has something to do, and gets no processor, does not."""
+def thread_states(pid):
+    """Of each thread of a process the letter of its state. [man 5 proc: stat] Without those that have ended."""
     tasks = f"/proc/{pid}/task"
+    states = {}
     try:
         for task in os.listdir(tasks):
             with open(f"{tasks}/{task}/stat", encoding="utf-8") as file:
-                if file.read().rpartition(")")[2].split()[0] not in "SZT":
-                    return False
-    except FileNotFoundError:  # it has just ended, and its threads with it
+                states[task] = file.read().rpartition(")")[2].split()[0]
+    except (FileNotFoundError, ProcessLookupError):
         pass
-    return True
+    return states
+
+
+def asleep(pid):
+    """Whether all threads of a process wait, or are stopped. One that has something to do, and gets no processor, does not."""
+    return all(state in "SZT" for state in thread_states(pid).values())
+
+
+def blocked_threads(pid):
+    """The threads of a process that wait for a disk now: for a file, or for their own code, which the kernel reads again where it
+    has been taken out of memory."""
+    return {task for task, state in thread_states(pid).items() if state == "D"}
 
 
 def starved_threads(pid):
@@ -50,6 +61,9 @@ class Program(subprocess.Popen):
     def starved_threads(self):
         """As above; after its end what was known then, of the threads that it had left."""
         return self.at_end if self.returncode is not None else starved_threads(self.pid)
+
+    def blocked_threads(self):
+        return set() if self.returncode is not None else blocked_threads(self.pid)
 
     def has_ended(self, patience=os.WNOHANG):
         """It is still there, to be looked at, until `poll` or `wait` has taken its exit code."""

@@ -1,11 +1,13 @@
 """amiroctl central: this machine as the central of mappers. The robots are played here on ptys, without a line of
 the library."""
 
+import fcntl
 import os
 import pty
 import re
 import select
 import signal
+import struct
 import subprocess
 import sys
 import termios
@@ -47,6 +49,10 @@ class Robot:
             if until is not None and until.encode() in self.heard:
                 break
         return self.heard.decode()
+
+    def waits(self):
+        """How many bytes the kernel has ready for it; more may be on their way through its buffers."""
+        return struct.unpack("i", fcntl.ioctl(self.master, termios.FIONREAD, b"0000"))[0]
 
     def unplug(self):
         if self.master is not None:
@@ -355,12 +361,16 @@ class OnSerialLines(Case):
 
     def flooded(self):
         """A central whose robot has a link, does not read, and was sent more than can wait."""
-        talk = self.central(("AVR", self.robot()))
+        robot = self.robot()
+        talk = self.central(("AVR", robot))
         talk.type("start\nconn 0\n")
         talk.wait_for("connected 0\n")
-        for _ in range(100):
-            talk.type("{U,90,50}\n" * 200)
-            time.sleep(0.001)
+        for full in (False, True):
+            for _ in range(100):
+                talk.type("{U,90,50}\n" * 200)
+                time.sleep(0.001)
+            if not full:  # the kernel, which may be late, has made the last room that there is without a reader
+                waiting.until(lambda: robot.waits() >= 4095, "the robot's buffer is full")
         self.settle()
         return talk
 
