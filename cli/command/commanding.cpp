@@ -64,7 +64,7 @@ void carry_out(Session& session, const Commanding& commanding, const client::Com
   outgoing.expect_all_left();
   refusals.sent(frames);
   refusals.listen(*bus);
-  if (command.ends_hold && frames.size() > 1) refusals.forgive_unserved();
+  if (command.ends_hold) refusals.forgive_unserved();
   refusals.leave_if_refused();
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <string_view>
 
 #include "ocm/base/time.hpp"
@@ -19,12 +20,13 @@ class LogStart {
   /// it came. [decided: a page subscribes within a tenth of it]
   static constexpr base::Duration patience = std::chrono::seconds{1};
 
-  /// `subscribed`: a viewer has subscribed to something of the log; `viewers`: there is one at all. Once
-  /// true, always true.
-  [[nodiscard]] bool plays(bool subscribed, bool viewers, Clock::time_point now) {
-    if (!viewers || !has_viewers_) came_ = now;
-    has_viewers_ = viewers;
-    plays_ = plays_ || subscribed || (viewers && now - came_ >= patience);
+  /// `subscribed`: a viewer has subscribed to something of the log; `viewers`: how many there are at all.
+  /// Once true, always true.
+  [[nodiscard]] bool plays(bool subscribed, std::size_t viewers, Clock::time_point now) {
+    const bool has_viewers = viewers != 0;
+    if (!has_viewers || !has_viewers_) came_ = now;
+    has_viewers_ = has_viewers;
+    plays_ = plays_ || subscribed || (has_viewers && now - came_ >= patience);
     return plays_;
   }
   /// A time bar was used.

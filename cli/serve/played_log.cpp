@@ -60,8 +60,7 @@ int serve_log(PageServer& server, bus_model::LogFeed& log) {
     const bool asked = wait_for_input(std::span{&input, 1}, play_step);
     const auto now = Clock::now();
     const base::Duration passed = now - std::exchange(before, now);
-    if (start.plays(server.is_looked_at(), server.viewers().count() != 0, now) && !paused)
-      log.play(passed, taken);
+    if (start.plays(server.is_looked_at(), server.viewers().count(), now) && !paused) log.play(passed, taken);
     server.until(log.now());
     if (asked) {
       for (const Order& order : server.orders().take()) {

@@ -43,7 +43,7 @@ int serve_robots_of_log(PageServer& server, fleet::LineReplay replay) {
     const base::Duration passed = now - std::exchange(before, now);
     const auto channels = server.fleet_channels();
     const bool is_seen = server.viewers().wanted(channels.fleet) || server.viewers().wanted(channels.map);
-    if (start.plays(is_seen, server.viewers().count() != 0, now)) player.pass(passed);
+    if (start.plays(is_seen, server.viewers().count(), now)) player.pass(passed);
     if (asked)
       for (const Order& order : server.orders().take()) {
         if (order.kind == Order::Kind::playback) start.begin();

@@ -52,6 +52,25 @@ TEST_CASE(
   CHECK(commanded({"23C#010203", "229#E803", "208#01"}, false).empty());  // not of the wheels' board
 }
 
+TEST_CASE("behaviour watch: what came before it began does not count") {
+  const World world{1};
+  BehaviourWatch watch{amiro::catalogue, "behave", "follow"};
+  watch.begin();
+  take(watch, "60D#02000A0000F6FFFF");
+  take(watch, "60D#0000000000000000");
+  take(watch, "20C#E803");
+  CHECK(watch.heard());
+  CHECK(watch.over());
+  CHECK(watch.is_replaced());
+  CHECK_FALSE(watch.commanded().empty());
+  watch.begin();
+  CHECK_FALSE(watch.heard());
+  CHECK_FALSE(watch.was_active());
+  CHECK_FALSE(watch.over());
+  CHECK_FALSE(watch.is_replaced());
+  CHECK(watch.commanded().empty());
+}
+
 TEST_CASE("behaviour watch: a spec that has no such behaviour, or does not say what becomes of it") {
   const World world{1};
   const auto refusal = [](auto&& act) {

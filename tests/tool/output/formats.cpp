@@ -106,6 +106,12 @@ TEST_CASE("pretty lines fit a terminal, and no number is broken", "[output]") {
         "    z         0 deg/s\n");
   CHECK(shown(cli::make_pretty(amiro::catalogue, {}, false, terminal<80>), {frames[0]}) ==
         "    0.000000  medium  gyroscope  x    0.0525  y   -0.0175  z         0 deg/s\n");
+  // Names have a column of 24 where 40 are left behind it.
+  CHECK(shown(cli::make_pretty(amiro::catalogue, {}, false, terminal<85>), {frames[0]}) ==
+        "    0.000000  medium  gyroscope  x    0.0525  y   -0.0175  z         0 deg/s\n");
+  CHECK(shown(cli::make_pretty(amiro::catalogue, {}, false, terminal<86>), {frames[0]}) ==
+        "    0.000000  medium  gyroscope                 x    0.0525  y   -0.0175\n"
+        "                      z         0 deg/s\n");
 }
 
 TEST_CASE("pretty lines say the time since the first frame, and how far before it a frame came", "[output]") {
