@@ -4,7 +4,6 @@
 #include <cerrno>
 #include <cstring>
 #include <fcntl.h>
-#include <span>
 #include <unistd.h>
 #include <utility>
 
@@ -18,24 +17,18 @@ namespace ocm::cli::fleet {
 namespace {
 
 /// An hour of one robot is less than a megabyte.
-constexpr std::uint64_t longest_log = std::uint64_t{256} << 20;
+constexpr std::size_t longest_log = std::size_t{256} << 20;
 
-/// All of a file, or as much as there is room for.
 std::string read_all(std::string_view verb, const std::string& path) {
-  logs::FileSource source{path};
-  std::string text;
-  std::array<char, 1 << 16> block;
-  for (std::size_t size = source.read(block); size != 0; size = source.read(block)) {
-    text.append(block.data(), size);
-    if (text.size() > longest_log)
-      fail({fmt::format("{}: {} is longer than {} MB", verb, path, longest_log >> 20),
-            "split it: each part begins with the first line of the whole"});
-  }
+  auto file = logs::read_file(path, longest_log);
+  if (file.too_long)
+    fail({fmt::format("{}: {} is longer than {} MB", verb, path, longest_log >> 20),
+          "split it: each part begins with the first line of the whole"});
   if (interrupted() != 0) throw Exit{exit_code_after_interrupt(exit_failure)};
-  if (!source.failure().empty())
-    fail({fmt::format("{}: cannot read {}: {}", verb, path, source.failure()),
+  if (!file.failure.empty())
+    fail({fmt::format("{}: cannot read {}: {}", verb, path, file.failure),
           "expected a log that --record has written"});
-  return text;
+  return std::move(file.text);
 }
 
 }  // namespace

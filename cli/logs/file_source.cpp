@@ -1,6 +1,7 @@
 #include "cli/logs/file_source.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <fcntl.h>
@@ -64,6 +65,18 @@ std::size_t FileSource::read_some(std::span<char> into) {
     }
     if (errno != EINTR) failure_ = std::strerror(errno);
   }
+}
+
+WholeFile read_file(const std::string& path, std::size_t most) {
+  FileSource source{path};
+  WholeFile file;
+  std::array<char, 1 << 16> block;
+  for (std::size_t size = source.read(block); size != 0; size = source.read(block)) {
+    file.text.append(block.data(), size);
+    if (file.text.size() > most) return {{}, {}, true};
+  }
+  file.failure = source.failure();
+  return file;
 }
 
 }  // namespace ocm::cli::logs

@@ -44,6 +44,14 @@ class FileSource final : public log::Source {
   std::string failure_;
 };
 
+/// All of a file, as far as it could be read; nothing of one that is longer than `most`.
+struct WholeFile {
+  std::string text;
+  std::string failure;    ///< of reading, or "interrupted"; empty: none
+  bool too_long = false;  ///< no more of it was read
+};
+[[nodiscard]] WholeFile read_file(const std::string& path, std::size_t most);
+
 /// Passes over the byte order mark that some editors put before a text.
 inline void skip_byte_order_mark(log::Input& input) {
   constexpr std::string_view mark = "\xEF\xBB\xBF";

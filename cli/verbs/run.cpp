@@ -1,13 +1,7 @@
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <iostream>
 #include <memory>
 #include <span>
 #include <string_view>
-#include <system_error>
 #include <unistd.h>
 #include <vector>
 
@@ -19,6 +13,7 @@
 #include "cli/command/commanding.hpp"
 #include "cli/command/operated_bus.hpp"
 #include "cli/command/timeline.hpp"
+#include "cli/logs/file_source.hpp"
 #include "cli/output/printer.hpp"
 #include "cli/shared/begun_behaviours.hpp"
 #include "cli/shared/clock.hpp"
@@ -44,29 +39,12 @@ struct RunOptions {
 /// Far more than a person writes by hand; a pipe that never ends must not fill the memory.
 constexpr std::size_t max_script = 16U << 20U;
 
-std::string read_all(std::istream& in) {
-  std::string text;
-  char piece[65'536];
-  while (text.size() <= max_script && (in.read(piece, sizeof piece) || in.gcount() > 0))
-    text.append(piece, static_cast<std::size_t>(in.gcount()));
-  return text;
-}
-
 std::string read_script(const std::string& file) {
-  std::string text;
-  if (file == "-") {
-    text = read_all(std::cin);
-  } else {
-    std::error_code error;
-    if (std::filesystem::is_directory(file, error))
-      fail({fmt::format("{} is a folder", file), "give the name of a script, or - for standard input"});
-    std::ifstream in{file, std::ios::binary};
-    if (!in.is_open())
-      fail({fmt::format("cannot read {}: {}", file, std::strerror(errno)),
-            "give the name of a script, or - for standard input"});
-    text = read_all(in);
-  }
-  if (text.size() > max_script)
+  auto [text, failure, too_long] = logs::read_file(file, max_script);
+  if (!failure.empty())
+    fail({fmt::format("cannot read {}: {}", file == "-" ? "the standard input" : file, failure),
+          "give the name of a script, or - for standard input"});
+  if (too_long)
     fail({fmt::format("{} is larger than {} MiB", file, max_script >> 20U),
           "a script has one command a line"});
   if (const auto at = text.find('\0'); at != std::string::npos)
@@ -74,7 +52,7 @@ std::string read_script(const std::string& file) {
                       std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n') + 1),
           "a script has one command a line"},
          exit_usage);
-  return text;
+  return std::move(text);
 }
 
 /// The script, checked whole: with an error in it nothing is sent.

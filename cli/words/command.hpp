@@ -263,7 +263,8 @@ class CommandParser {
     for (std::size_t i = 1; i < line.size(); ++i) {
       const auto value = parse_typed_value(*velocities[i - 1], line[i]);
       if (!value) {
-        const std::string whole = i + 1 < line.size() ? written_apart(line[i], line[i + 1]) : std::string{};
+        const std::string whole =
+            i + 1 < line.size() ? written_apart(*velocities[i - 1], line[i], line[i + 1]) : std::string{};
         return WordError{i, value.error,
                          whole.empty() ? std::string{remedies[i - 1]} : "write it as one word, " + whole};
       }
@@ -413,7 +414,8 @@ class CommandParser {
       // [docs/decisions/0027]
       const auto value = target.is_message() ? parse_value(field, text) : parse_typed_value(field, text);
       if (!value) {
-        const std::string whole = i + 1 < line.size() ? written_apart(text, line[i + 1]) : std::string{};
+        const std::string whole =
+            i + 1 < line.size() ? written_apart(field, text, line[i + 1]) : std::string{};
         return WordError{i, value.error,
                          (whole.empty() ? "for example " : "write it as one word, ") + std::string{name} +
                              "=" + (whole.empty() ? example_of(field, text) : whole)};

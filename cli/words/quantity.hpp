@@ -207,13 +207,18 @@ namespace detail {
   return quantity && quantity->unit.empty();
 }
 
+/// A number and its unit as one word; empty: they are something else.
+[[nodiscard]] inline std::string as_one_word(std::string_view number, std::string_view unit) {
+  std::string whole = std::string{number} + std::string{unit};
+  const auto quantity = parse_quantity(whole);
+  return lacks_unit(number) && quantity && quantity->unit == unit ? std::move(whole) : std::string{};
+}
+
 /// "500ms" or "5cm/s", where a time or a speed was written as two words; empty: it was not.
 [[nodiscard]] inline std::string written_apart(std::string_view number, std::string_view unit) {
-  const std::string whole = std::string{number} + std::string{unit};
-  const auto quantity = parse_quantity(whole);
-  if (!lacks_unit(number) || !quantity || quantity->unit != unit) return {};
+  std::string whole = as_one_word(number, unit);
   const auto of_speed = detail::parse_unit(unit);
-  return parse_duration(whole) || (of_speed && of_speed->per != 0) ? whole : std::string{};
+  return parse_duration(whole) || (of_speed && of_speed->per != 0) ? std::move(whole) : std::string{};
 }
 
 /// The same, of the first such two of a line; empty: none was.

@@ -189,4 +189,11 @@ namespace detail {
   return parse_value(field, text);
 }
 
+/// The value that was written as a number and, as the next word, its unit; empty: the field does not take it.
+[[nodiscard]] inline std::string written_apart(const protocol::Field& field, std::string_view number,
+                                               std::string_view unit) {
+  std::string whole = as_one_word(number, unit);
+  return !whole.empty() && parse_typed_value(field, whole) ? std::move(whole) : std::string{};
+}
+
 }  // namespace ocm::cli::words

@@ -429,7 +429,12 @@ class Scripts(Case):
         _, err = self.run_tool("run", os.path.join(self.folder, "none.script"), code=1)
         self.assertIn("none.script", err)
         _, err = self.run_tool("run", self.folder, code=1)
-        self.assertIn("is a folder", err)
+        self.assertIn(f"cannot read {self.folder}: Is a directory", err)
+        folder = os.open(self.folder, os.O_RDONLY)
+        self.addCleanup(os.close, folder)
+        run = subprocess.run([AMIROCTL, "run", "-"], stdin=folder, env=self.environment, text=True, timeout=30, check=False, capture_output=True)
+        self.assertEqual((run.returncode, run.stderr), (1, "amiroctl: cannot read the standard input: Is a directory\n"
+                                                           "          give the name of a script, or - for standard input\n"))
         _, err = self.run_tool("run", "/dev/zero", code=1)
         self.assertIn("larger than 16 MiB", err)
 

@@ -197,8 +197,11 @@ TEST_CASE("what is wrong is said of the word where it stands") {
       {"publish gyro 500 sheep", 3, "unexpected argument 'sheep'", "usage: publish TOPIC"},
       {"drive 0 30 deg/s", 3, "unexpected argument 'deg/s'", "write it as one word, 30deg/s"},
       {"drive 5 cm/s", 1, "'5' needs a unit", "write it as one word, 5cm/s"},
+      {"drive 5 deg/s", 1, "'5' needs a unit", "write 0.05m/s, 5cm/s or 50000um/s"},  // of the other field
+      {"drive 50 cm/h/h", 1, "'50' needs a unit", "write 0.05m/s, 5cm/s or 50000um/s"},
       {"drive 5 cm/s 10 deg/s", 3, "unexpected argument '10'", "write it as one word, 5cm/s"},
       {"set motors x=5 cm/s", 2, "'5' needs a unit", "write it as one word, x=5cm/s"},
+      {"set motors x=5 deg/s", 2, "'5' needs a unit", "for example x=0.1m/s"},
       {"set motors x=5 sheep", 2, "'5' needs a unit", "for example x="},
       {"publish gyro 5 cm", 3, "unexpected argument 'cm'", "usage: publish TOPIC"},
       {"led 1 grene", 2, "'grene' is not a colour", "did you mean 'green'?"},
