@@ -60,9 +60,16 @@ base::Result<bool> OperatedBus::send_any(const can::AnyFrame& frame) {
   return bus_->send_any(frame);
 }
 
-void OperatedBus::tell_limits(std::string_view text) {
-  if (text.empty() || !told_limits_.emplace(text).second) return;
-  remark(fmt::format("{}: {} limits {}", verb_, link_->who(), text));
+void OperatedBus::tell_limits(std::string_view lines) {
+  std::string unheard;
+  while (!lines.empty()) {
+    const std::string_view limit = lines.substr(0, lines.find('\n'));
+    lines.remove_prefix(std::min(limit.size() + 1, lines.size()));
+    if (!told_limits_.emplace(limit).second) continue;
+    unheard += unheard.empty() ? "" : ", ";
+    unheard += limit;
+  }
+  if (!unheard.empty()) remark(fmt::format("{}: {} limits {}", verb_, link_->who(), unheard));
 }
 
 bool OperatedBus::is_echo(const can::Frame& frame) {

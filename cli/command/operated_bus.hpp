@@ -41,6 +41,7 @@ class OperatedBus final : public transport::Bus, public Guarded {
   [[nodiscard]] const transport::BusCounters& counters() const override;
   [[nodiscard]] transport::BusState state() const override { return bus_->state(); }
   [[nodiscard]] transport::Delivery delivery() override;
+  [[nodiscard]] bool is_simulated() const noexcept override { return bus_->is_simulated(); }
   [[nodiscard]] std::uint32_t bit_rate() const noexcept override { return bus_->bit_rate(); }
   [[nodiscard]] const transport::Failure& failure() const override { return bus_->failure(); }
   /// The operator has ended, or was silent: it takes nothing any more.
@@ -53,8 +54,8 @@ class OperatedBus final : public transport::Bus, public Guarded {
   /// Whether the frame commands an actuator.
   [[nodiscard]] bool commands(const can::Frame& frame) const;
   [[nodiscard]] bool is_echo(const can::Frame& frame);
-  /// Says what the operator has changed, each once.
-  void tell_limits(std::string_view text);
+  /// Says what the operator holds within limits, one in a line, each once.
+  void tell_limits(std::string_view lines);
 
   struct Echo {
     can::Frame frame;

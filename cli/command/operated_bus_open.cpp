@@ -14,17 +14,18 @@ namespace {
 
 std::unique_ptr<transport::Bus> with_operator(std::unique_ptr<transport::Bus> bus, Session& session,
                                               std::string_view verb) {
-  auto link = connect_operator(bus->name(), verb);
-  if (!link) fail({fmt::format("{}: {}", verb, link.error.what), link.error.remedy});
-  if (*link == nullptr) return bus;
-  const auto is_actuator = [](const protocol::Topic& topic) {
-    return topic.kind == protocol::Kind::actuator;
-  };
   const auto& topics = session.catalogue().topics;
+  const bool moves = std::any_of(topics.begin(), topics.end(), [](const protocol::Topic& topic) {
+    return topic.kind == protocol::Kind::actuator;
+  });
+  auto link = connect_operator(bus->name(), verb);
+  if (!link)
+    fail({fmt::format("{}: {}", verb, link.error.what),
+          (moves ? "`amiroctl stop` reaches the robot past it; " : "") + link.error.remedy});
+  if (*link == nullptr) return bus;
   remark(fmt::format("{}: {} {}", verb, (*link)->who(),
-                     std::any_of(topics.begin(), topics.end(), is_actuator)
-                         ? "guards the robot: set points go through it"
-                         : "watches the bus; messages do not go through it"));
+                     moves ? "guards the robot: set points go through it"
+                           : "watches the bus; messages do not go through it"));
   return std::make_unique<OperatedBus>(std::move(bus), std::move(*link), session.catalogue(),
                                        std::string{verb});
 }

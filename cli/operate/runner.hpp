@@ -104,12 +104,12 @@ class Runner {
   /// What it commands itself where it is; null: not that actuator.
   [[nodiscard]] const reflective::SetPoint* own_set_point(std::uint16_t topic) const;
   [[nodiscard]] std::string commands(std::string_view text) const;
-  /// Tells once a program and topic.
-  /// Of a set point that was held within the limits.
+  /// What of a set point was held within the limits.
   struct Limited {
-    std::string fields;  ///< "motors.x, motors.z"; empty: nothing was
-    std::string text;    ///< with the limits
+    std::vector<std::string> fields;  ///< "motors.x"
+    std::vector<std::string> texts;   ///< of each: "motors.x to at most 0.02 m/s"
   };
+  /// Tells once a program and topic.
   void tell_command(Caller& caller, std::uint16_t topic, const Limited& limited, bool beyond);
   [[nodiscard]] Answers answers() const { return {*file_, supervisor_, changes_, commands_, lines_lost_}; }
 

@@ -191,11 +191,9 @@ std::string Runner::pass_on(Caller& caller, std::string_view text) {
       if (raw[i] == asked[i]) continue;
       const auto& field = layout.fields[i];
       protocol::put(frame->data, field.position, raw[i]);
-      const std::string_view comma = limited.fields.empty() ? "" : ", ";
-      limited.fields += fmt::format("{}{}.{}", comma, topic.name, field.name);
-      limited.text += comma;
-      limited.text +=
-          limit_text(tables.configurations[supervisor_.configuration()].limits, topic, number, i, asked[i]);
+      limited.fields.push_back(fmt::format("{}.{}", topic.name, field.name));
+      limited.texts.push_back(
+          limit_text(tables.configurations[supervisor_.configuration()].limits, topic, number, i, asked[i]));
     }
   }
   const auto taken = bus_->send(*frame);
@@ -214,7 +212,7 @@ std::string Runner::pass_on(Caller& caller, std::string_view text) {
   entry.direction = log::Direction::sent;
   box_.add(entry, Clock::now());
   tell_command(caller, number, limited, beyond);
-  return yes(fmt::format("{}\n{}", can::to_text(*frame).view(), limited.text));
+  return yes(fmt::format("{}\n{}", can::to_text(*frame).view(), fmt::join(limited.texts, "\n")));
 }
 
 void Runner::tell_command(Caller& caller, std::uint16_t topic, const Limited& limited, bool beyond) {
@@ -228,8 +226,12 @@ void Runner::tell_command(Caller& caller, std::uint16_t topic, const Limited& li
     tell("commanded", {{"topic", name}, {"by", caller.verb}, {"process", caller.process}},
          fmt::format("{} (process {}) commands {}", caller.verb, caller.process, name));
   if (!limited.fields.empty() && first(caller.limited))
-    tell("limited", {{"fields", limited.fields}, {"by", caller.verb}, {"process", caller.process}},
-         fmt::format("{} (process {}) is limited: {}", caller.verb, caller.process, limited.text));
+    tell("limited",
+         {{"fields", fmt::format("{}", fmt::join(limited.fields, ", "))},
+          {"by", caller.verb},
+          {"process", caller.process}},
+         fmt::format("{} (process {}) is limited: {}", caller.verb, caller.process,
+                     fmt::join(limited.texts, ", ")));
   if (beyond && first(caller.beyond))
     tell("beyond_proof", {{"topic", name}, {"by", caller.verb}, {"process", caller.process}},
          fmt::format("{} (process {}) commands {} more often, or more urgently, than the proof counts: the "

@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include "ocm/can/any_text.hpp"
-#include "ocm/transport/virtual_bus.hpp"
 
 #include "cli/shared/clock.hpp"
 #include "cli/shared/messages.hpp"
@@ -22,7 +21,7 @@ constexpr base::Duration look_again = std::chrono::milliseconds{1};
 }  // namespace
 
 std::string why_none_leaves(const transport::Bus& bus) {
-  if (dynamic_cast<const transport::VirtualBus*>(&bus) != nullptr)
+  if (bus.is_simulated())
     return "the simulator takes none: was it stopped (Ctrl-Z; `fg` lets it go on), or is the machine busy?";
   return "no node acknowledges the frames: is a board powered and connected, and is the bit rate the same?";
 }
@@ -73,8 +72,7 @@ bool Outgoing::is_taken(const can::Frame& frame, base::Duration patience) {
 }
 
 bool Outgoing::robot_is_gone() const {
-  return bus_.state() == transport::BusState::closed &&
-         dynamic_cast<const transport::VirtualBus*>(&bus_) != nullptr;
+  return bus_.state() == transport::BusState::closed && bus_.is_simulated();
 }
 
 Clock::time_point Outgoing::look() {

@@ -98,6 +98,8 @@ class Bus {
   }
   /// What became of the frames that were sent. May ask the kernel: some 20 us.
   [[nodiscard]] virtual Delivery delivery() { return {}; }
+  /// Whether a simulator is at its other end, and not a wire.
+  [[nodiscard]] virtual bool is_simulated() const noexcept { return false; }
   /// bit/s, where the bus says it; 0: not known.
   [[nodiscard]] virtual std::uint32_t bit_rate() const noexcept { return 0; }
   /// Why `send` or `receive` answered Error::closed, in words; empty while the bus is open.

@@ -90,6 +90,7 @@ class VirtualBus final : public Bus {
 
   /// "sim", or "sim:PATH".
   [[nodiscard]] std::string_view name() const override { return name_; }
+  [[nodiscard]] bool is_simulated() const noexcept override { return true; }
   /// What the server calls its bus or robot.
   [[nodiscard]] std::string_view bus_name() const noexcept { return bus_name_; }
   /// bit/s

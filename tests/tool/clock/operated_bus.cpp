@@ -156,12 +156,15 @@ TEST_CASE("operated bus: a frame that the operator has sent for it comes to it f
 
 TEST_CASE("operated bus: what is limited is said once") {
   Bench bench;
-  for (const char* const limits : {"", "motors.x", "motors.x", "", "motors.x, motors.z", "motors.x"})
+  for (const char* const limits :
+       {"", "motors.x", "motors.x", "", "motors.x\nmotors.z", "motors.x", "led.a\nled.b"})
     bench.answers.push_back(fmt::format("ok\n201#204E000000000000\n{}", limits));
   Captured err{STDERR_FILENO};
-  for (int i = 0; i < 6; ++i) CHECK(bench.sends("201#50C3000000000000"));
+  for (int i = 0; i < 7; ++i) CHECK(bench.sends("201#50C3000000000000"));
   CHECK(err.text() ==
-        "drive: operator guard limits motors.x\ndrive: operator guard limits motors.x, motors.z\n");
+        "drive: operator guard limits motors.x\n"
+        "drive: operator guard limits motors.z\n"
+        "drive: operator guard limits led.a, led.b\n");
 }
 
 TEST_CASE("operated bus: what waits is that of the bus and of the operator together") {
@@ -203,6 +206,11 @@ TEST_CASE("operated bus: when the operator has ended only the end of a motion go
   CHECK(bench.on_bus() == Texts{"201#0000000000000000", "20B#0000000000000000", "229#0000"});
   CHECK(bench.bus->delivery().obstruction.what.empty());
   CHECK_FALSE(bench.bus->commands_itself(frame("201#1027000000000000")).again_and_again);
+}
+
+TEST_CASE("operated bus: it is simulated where its bus is") {
+  for (const bool simulated : {false, true})
+    CHECK(Bench{{.is_simulated = simulated}}.bus->is_simulated() == simulated);
 }
 
 TEST_CASE("operated bus: whether the operator commands an actuator itself") {

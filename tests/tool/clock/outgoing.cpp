@@ -60,6 +60,20 @@ TEST_CASE("outgoing: a full queue is waited for, a second and no longer") {
   CHECK(bus.sent().size() == 2);
 }
 
+TEST_CASE("outgoing: of a simulator that takes no frame no wire is suspected") {
+  World world{1};
+  PlayedBus::Conditions conditions;
+  conditions.room = 0;
+  conditions.is_simulated = true;
+  PlayedBus bus{world, std::move(conditions), "sim"};
+  Outgoing outgoing{bus, "led"};
+  CHECK_FALSE(outgoing.robot_is_gone());
+  CHECK(left(world, [&] { outgoing.send(frame("23C#010203")); }).text ==
+        "amiroctl: led: the transmit queue of sim stays full: 23C#010203 was not sent\n"
+        "          the simulator takes none: was it stopped (Ctrl-Z; `fg` lets it go on), or is the machine "
+        "busy?\n");
+}
+
 TEST_CASE("outgoing: a bus that is down is said before anything is sent, or when it goes down") {
   World world{1};
   PlayedBus::Conditions conditions;

@@ -36,6 +36,7 @@ class PlayedBus final : public transport::Bus {
     std::size_t room = 10;        ///< frames in the queue
     Duration frame_time = 250us;  ///< on the bus
     bool knows_delivery = true;
+    bool is_simulated = false;
     std::vector<Time> stuck{};  ///< no frame leaves
     std::vector<Time> down{};   ///< no frame is taken, either
     Moment gone = Moment::max();
@@ -78,6 +79,7 @@ class PlayedBus final : public transport::Bus {
   }
   transport::Outcome<void> subscribe(std::span<const can::Filter>) override { return {}; }
   int descriptor() const override { return descriptor_; }
+  bool is_simulated() const noexcept override { return conditions_.is_simulated; }
   const transport::BusCounters& counters() const override { return counters_; }
   transport::BusState state() const override {
     if (!failure_.what.empty()) return transport::BusState::closed;

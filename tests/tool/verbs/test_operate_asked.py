@@ -232,6 +232,9 @@ class Asked(Operating):
                 if number == signal.SIGSTOP:
                     _, err = self.run_tool("operator", "status", code=1)
                     self.assertIn("does not answer", err)
+                    _, err = self.run_tool("drive", "stop", code=1)
+                    self.assertRegex(err, r"operator on \S+ \(process [0-9]+\) does not answer\n +`amiroctl stop` reaches the robot past it; was it stopped")
+                    self.run_tool("stop")
                     operator.kill()
                 operator.wait()
 

@@ -58,6 +58,7 @@ TEST_CASE("a bus that knows classic frames alone takes those of either kind, and
   CHECK(bus.fd_obstacle().what == "'plain' carries no CAN FD frames");
   CHECK_FALSE(bus.fd_obstacle().remedy.empty());
   CHECK(bus.bit_rate() == 0);
+  CHECK_FALSE(bus.is_simulated());
   const transport::Delivery unknown = bus.delivery();
   CHECK_FALSE(unknown.known);
   CHECK(unknown.pending == 0);

@@ -87,6 +87,7 @@ TEST_CASE("a client knows its bus") {
   CHECK(bus->name() == "sim:" + setup.path());
   CHECK(bus->bus_name() == "amiro-with-");
   CHECK(bus->bit_rate() == 125'000);
+  CHECK(bus->is_simulated());
   CHECK(bus->credit() == 5);
   CHECK(bus->state() == BusState::up);
   CHECK(bus->failure() == transport::Failure{});
