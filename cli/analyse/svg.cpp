@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cstdint>
 #include <iterator>
+#include <string>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -153,66 +155,101 @@ std::int64_t grid_step(std::int64_t span) {
   }
 }
 
-}  // namespace
+/// The picture: when each row is released and runs as the worst case unfolds, and below it what is left to
+/// each deadline. Lengths are pixels.
+class Picture {
+ public:
+  explicit Picture(const Study& study)
+      : study_(study),
+        schedule_{study},
+        drawn_(std::min(study.rows.size(), most_drawn)),
+        left_(room_for_names()),
+        rows_height_(row_height * static_cast<double>(drawn_)),
+        bars_top_(top + rows_height_ + 74) {}
 
-std::string to_svg(const Study& study) {
-  const Schedule schedule{study};
-  const std::size_t drawn = std::min(study.rows.size(), most_drawn);
-  std::size_t longest_name = 8;
-  for (std::size_t i = 0; i < drawn; ++i) longest_name = std::max(longest_name, study.rows[i].name.size());
-  const double left = 24 + 7.4 * static_cast<double>(std::min<std::size_t>(longest_name, 44));
-  constexpr double chart = 680;
-  constexpr double right = 20;
-  constexpr double row_height = 24;
-  constexpr double top = 66;
-  const double width = left + chart + right;
-  const double rows_height = row_height * static_cast<double>(drawn);
-  const double bars_top = top + rows_height + 74;
-  const double height = bars_top + rows_height + 44;
-  const auto x = [&](std::int64_t t) {
-    return left + chart * static_cast<double>(t) / static_cast<double>(schedule.span);
-  };
-  std::string svg;
-  const auto add = [&svg]<class... Values>(fmt::format_string<Values...> text, Values&&... values) {
-    svg += fmt::format(text, std::forward<Values>(values)...);
-  };
-  add("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" width=\"{0:.0f}\" "
-      "height=\"{1:.0f}\" font-family=\"DejaVu Sans, sans-serif\" font-size=\"12\">\n"
-      "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n",
-      width, height);
-  const auto ppm = study.load.parts_per_million();
-  add("<text x=\"10\" y=\"22\" font-size=\"15\" font-weight=\"bold\">Worst case of {}</text>\n"
-      "<text x=\"10\" y=\"42\" fill=\"#555\">{}.{:02} % of the {}; {}{}</text>\n",
-      study.rows.empty() ? "" : escaped(study.rows[schedule.victim].name), ppm / 10'000, ppm % 10'000 / 100,
-      study.kind == Study::Kind::bus ? "bus" : "processor", escaped(study.head),
-      drawn < study.rows.size() ? fmt::format("; the first {} of {}", drawn, study.rows.size()) : "");
+  [[nodiscard]] std::string draw() {
+    add("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" width=\"{0:.0f}\" "
+        "height=\"{1:.0f}\" font-family=\"DejaVu Sans, sans-serif\" font-size=\"12\">\n"
+        "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n",
+        left_ + chart + right, bars_top_ + rows_height_ + 44);
+    title();
+    grid();
+    for (std::size_t i = 0; i < drawn_; ++i) releases(i);
+    for (const Piece& piece : schedule_.pieces)
+      if (piece.row < drawn_) runs(piece);
+    add("<text x=\"{:.0f}\" y=\"{:.1f}\" fill=\"#555\" font-size=\"11\">arrow: release; red line: first "
+        "deadline; grey: what blocks it, has just begun; orange: it</text>\n",
+        left_, top + rows_height_ + 32);
+    add("<text x=\"10\" y=\"{:.1f}\" font-size=\"15\" font-weight=\"bold\">Response at worst, and what is "
+        "left "
+        "to the deadline</text>\n",
+        bars_top_ - 12);
+    for (std::size_t i = 0; i < drawn_; ++i) response(i);
+    deadlines();
+    svg_ += "</svg>\n";
+    return std::move(svg_);
+  }
 
-  const std::int64_t step = grid_step(schedule.span);
-  for (std::int64_t t = 0; t <= schedule.span && t <= INT64_MAX - step; t += step)
-    add("<line x1=\"{0:.2f}\" y1=\"{1:.1f}\" x2=\"{0:.2f}\" y2=\"{2:.1f}\" stroke=\"#ddd\"/>"
-        "<text x=\"{0:.2f}\" y=\"{3:.1f}\" text-anchor=\"middle\" fill=\"#555\" "
-        "font-size=\"10\">{4}</text>\n",
-        x(t), top, top + rows_height, top + rows_height + 14, time_text(t));
-  for (std::size_t i = 0; i < drawn; ++i) {
-    const Row& row = study.rows[i];
-    const double y = top + row_height * static_cast<double>(i);
-    add("<line x1=\"{:.0f}\" y1=\"{:.1f}\" x2=\"{:.0f}\" y2=\"{:.1f}\" stroke=\"#bbb\"/>\n", left,
-        y + row_height - 4, left + chart, y + row_height - 4);
-    add("<text x=\"{:.0f}\" y=\"{:.1f}\" text-anchor=\"end\"{}>{}</text>\n", left - 8, y + 16,
+ private:
+  static constexpr double chart = 680;
+  static constexpr double right = 20;
+  static constexpr double row_height = 24;
+  static constexpr double top = 66;
+  /// All deadlines are at one place, so that what is beyond them can be seen.
+  static constexpr double due = chart * 0.5;
+
+  template <class... Values>
+  void add(fmt::format_string<Values...> text, Values&&... values) {
+    svg_ += fmt::format(text, std::forward<Values>(values)...);
+  }
+  [[nodiscard]] double room_for_names() const {
+    std::size_t longest = 8;
+    for (std::size_t i = 0; i < drawn_; ++i) longest = std::max(longest, study_.rows[i].name.size());
+    return 24 + 7.4 * static_cast<double>(std::min<std::size_t>(longest, 44));
+  }
+  [[nodiscard]] double x(std::int64_t t) const {
+    return left_ + chart * static_cast<double>(t) / static_cast<double>(schedule_.span);
+  }
+
+  void title() {
+    const auto ppm = study_.load.parts_per_million();
+    add("<text x=\"10\" y=\"22\" font-size=\"15\" font-weight=\"bold\">Worst case of {}</text>\n"
+        "<text x=\"10\" y=\"42\" fill=\"#555\">{}.{:02} % of the {}; {}{}</text>\n",
+        study_.rows.empty() ? "" : escaped(study_.rows[schedule_.victim].name), ppm / 10'000,
+        ppm % 10'000 / 100, study_.kind == Study::Kind::bus ? "bus" : "processor", escaped(study_.head),
+        drawn_ < study_.rows.size() ? fmt::format("; the first {} of {}", drawn_, study_.rows.size()) : "");
+  }
+  void grid() {
+    const std::int64_t step = grid_step(schedule_.span);
+    for (std::int64_t t = 0; t <= schedule_.span && t <= INT64_MAX - step; t += step)
+      add("<line x1=\"{0:.2f}\" y1=\"{1:.1f}\" x2=\"{0:.2f}\" y2=\"{2:.1f}\" stroke=\"#ddd\"/>"
+          "<text x=\"{0:.2f}\" y=\"{3:.1f}\" text-anchor=\"middle\" fill=\"#555\" "
+          "font-size=\"10\">{4}</text>\n",
+          x(t), top, top + rows_height_, top + rows_height_ + 14, time_text(t));
+  }
+  void name(const Row& row, double y) {
+    add("<text x=\"{:.0f}\" y=\"{:.1f}\" text-anchor=\"end\"{}>{}</text>\n", left_ - 8, y,
         row.result.ok() ? "" : " fill=\"#c22\" font-weight=\"bold\"", escaped(row.name));
-    for (const std::int64_t t : schedule.releases[i])
-      if (t <= schedule.span)
+  }
+  /// A row's line, with its releases and its first deadline.
+  void releases(std::size_t i) {
+    const Row& row = study_.rows[i];
+    const double y = top + row_height * static_cast<double>(i);
+    add("<line x1=\"{:.0f}\" y1=\"{:.1f}\" x2=\"{:.0f}\" y2=\"{:.1f}\" stroke=\"#bbb\"/>\n", left_,
+        y + row_height - 4, left_ + chart, y + row_height - 4);
+    name(row, y + 16);
+    for (const std::int64_t t : schedule_.releases[i])
+      if (t <= schedule_.span)
         add("<path d=\"M{0:.2f} {1:.1f}V{2:.1f}m-3 5l3 -5l3 5\" fill=\"none\" stroke=\"#444\"/>\n", x(t),
             y + row_height - 4, y + 2);
     // The first release is as late as its jitter lets it be.
-    const std::int64_t due = row.result.deadline - std::min(row.jitter, row.result.deadline);
-    if (due <= schedule.span)
+    const std::int64_t first = row.result.deadline - std::min(row.jitter, row.result.deadline);
+    if (first <= schedule_.span)
       add("<line x1=\"{0:.2f}\" y1=\"{1:.1f}\" x2=\"{0:.2f}\" y2=\"{2:.1f}\" stroke=\"#c22\" "
           "stroke-width=\"2\"/>\n",
-          x(due), y, y + row_height - 4);
+          x(first), y, y + row_height - 4);
   }
-  for (const Piece& piece : schedule.pieces) {
-    if (piece.row >= drawn) continue;
+  void runs(const Piece& piece) {
     const double y = top + row_height * static_cast<double>(piece.row) + 6;
     add("<rect x=\"{:.2f}\" y=\"{:.1f}\" width=\"{:.2f}\" height=\"14\" fill=\"{}\" stroke=\"#234\" "
         "stroke-width=\"0.5\"/>\n",
@@ -221,45 +258,48 @@ std::string to_svg(const Study& study) {
         : piece.kind == Piece::Kind::victim ? "#e59a3c"
                                             : "#4a8fc7");
   }
-  add("<text x=\"{:.0f}\" y=\"{:.1f}\" fill=\"#555\" font-size=\"11\">arrow: release; red line: first "
-      "deadline; grey: "
-      "what blocks it, has just begun; orange: it</text>\n",
-      left, top + rows_height + 32);
-
-  add("<text x=\"10\" y=\"{:.1f}\" font-size=\"15\" font-weight=\"bold\">Response at worst, and what is left "
-      "to the "
-      "deadline</text>\n",
-      bars_top - 12);
-  for (std::size_t i = 0; i < drawn; ++i) {
-    const Row& row = study.rows[i];
+  /// A bar as long as its response, and in words what is left.
+  void response(std::size_t i) {
+    const Row& row = study_.rows[i];
     const auto& r = row.result;
-    const double y = bars_top + row_height * static_cast<double>(i);
-    // All deadlines are at one place, so that what is beyond them can be seen.
-    constexpr double due = chart * 0.5;
+    const double y = bars_top_ + row_height * static_cast<double>(i);
     const double share =
         r.bounded() ? static_cast<double>(r.response) / static_cast<double>(r.deadline) : 1.25;
     const double bar = std::min(share, 1.25) * due;
-    add("<text x=\"{:.0f}\" y=\"{:.1f}\" text-anchor=\"end\"{}>{}</text>\n", left - 8, y + 14,
-        r.ok() ? "" : " fill=\"#c22\" font-weight=\"bold\"", escaped(row.name));
-    add("<rect x=\"{:.0f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"16\" fill=\"#e6efe6\"/>\n", left, y + 2,
+    name(row, y + 14);
+    add("<rect x=\"{:.0f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"16\" fill=\"#e6efe6\"/>\n", left_, y + 2,
         due);
-    add("<rect x=\"{:.0f}\" y=\"{:.1f}\" width=\"{:.2f}\" height=\"16\" fill=\"{}\"/>\n", left, y + 2,
+    add("<rect x=\"{:.0f}\" y=\"{:.1f}\" width=\"{:.2f}\" height=\"16\" fill=\"{}\"/>\n", left_, y + 2,
         std::max(bar, 0.5), r.ok() ? "#4a8fc7" : "#d66");
-    add("<text x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", left + std::max(bar, due) + 8, y + 14,
+    add("<text x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", left_ + std::max(bar, due) + 8, y + 14,
         !r.bounded() ? std::string{"no bound"}
         : r.ok()     ? fmt::format("{} of {}, {} left", time_text(r.response), time_text(r.deadline),
                                    time_text(r.slack()))
                      : fmt::format("{} of {}, {} late", time_text(r.response), time_text(r.deadline),
                                    time_text(-r.slack())));
   }
-  add("<line x1=\"{0:.1f}\" y1=\"{1:.1f}\" x2=\"{0:.1f}\" y2=\"{2:.1f}\" stroke=\"#c22\" "
-      "stroke-width=\"2\"/>\n",
-      left + chart * 0.5, bars_top - 2, bars_top + rows_height);
-  add("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\" fill=\"#c22\" "
-      "font-size=\"11\">deadline</text>\n",
-      left + chart * 0.5, bars_top + rows_height + 14);
-  svg += "</svg>\n";
-  return svg;
+  void deadlines() {
+    add("<line x1=\"{0:.1f}\" y1=\"{1:.1f}\" x2=\"{0:.1f}\" y2=\"{2:.1f}\" stroke=\"#c22\" "
+        "stroke-width=\"2\"/>\n",
+        left_ + due, bars_top_ - 2, bars_top_ + rows_height_);
+    add("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\" fill=\"#c22\" "
+        "font-size=\"11\">deadline</text>\n",
+        left_ + due, bars_top_ + rows_height_ + 14);
+  }
+
+  const Study& study_;
+  Schedule schedule_;
+  std::size_t drawn_;
+  double left_;  ///< of the chart; the names end before it
+  double rows_height_;
+  double bars_top_;
+  std::string svg_;
+};
+
+}  // namespace
+
+std::string to_svg(const Study& study) {
+  return Picture{study}.draw();
 }
 
 }  // namespace ocm::cli::analyse
