@@ -14,7 +14,7 @@ import unittest
 import waiting
 
 MOST_LATE = 0.05  # s, of a thread that wants to wake
-WINDOW = 1.0  # s, over which a program's waits for a processor, and for the disk, are added up
+WINDOW = 1.0  # s, over which a program's waits for a processor, and in the kernel, are added up
 LOOKS = 30
 MOST_TAKEN = 0.05  # of all processors, by what this test did not start; 0.01 on an idle machine
 
@@ -72,7 +72,7 @@ class Spare:
                 self.late = max(self.late, *(now - before.get(task, 0.0) for task, now in looks[-1][1].items()), 0.0)
 
     def waits(self, since):
-        """Of each thread of the programs, in s so far; who waits for the disk now has done so since the last look."""
+        """Of each thread of the programs, in s so far; who is held by the kernel now was since the last look."""
         waits = {}
         for program in self.programs():
             self.blocked.update({(program.pid, task): since for task in program.blocked_threads()})

@@ -22,7 +22,7 @@ class Printed(unittest.TestCase):
 
 
 class Played:
-    """A program whose only thread waits for the disk, from its third look on."""
+    """A program whose only thread is held by the kernel, from its third look on."""
     pid = 1
 
     def __init__(self):
@@ -37,7 +37,7 @@ class Played:
 
 
 class HeldUp(unittest.TestCase):
-    def test_who_waits_for_the_disk_is_late(self):
+    def test_who_is_held_by_the_kernel_is_late(self):
         program = Played()
         with realtime.Spare(lambda: [program]) as spare:
             waiting.until(lambda: program.looks > 20, "it is looked at")

@@ -33,8 +33,8 @@ def asleep(pid):
 
 
 def blocked_threads(pid):
-    """The threads of a process that wait for a disk now: for a file, or for their own code, which the kernel reads again where it
-    has been taken out of memory."""
+    """The threads of a process that the kernel holds now, where no signal comes through: for the disk, or for a worker of its own,
+    which on a busy machine moves the bytes of a terminal a second late."""
     return {task for task, state in thread_states(pid).items() if state == "D"}
 
 
