@@ -26,6 +26,7 @@ endfunction()
 # ocm_parse_once(TARGET...): reads what nearly every file of the tools includes, cmake/precompiled.hpp, once for all of
 # them. A file still includes what it uses. Without {fmt}, as where a board's build needs ocm-generate, each reads it for itself.
 find_package(fmt QUIET)
+include(${CMAKE_CURRENT_LIST_DIR}/OcmPrecompiled.cmake)
 function(ocm_parse_once)
   if(fmt_FOUND)
     foreach(target IN LISTS ARGN)
