@@ -56,6 +56,27 @@ TEST_CASE("remedies: findings") {
   CHECK(remedy(Finding{Severity::warning, "", "b", "c"}) == "c");
 }
 
+TEST_CASE("remedies: of each reason for which a board refuses") {
+  const auto& gyroscope = *amiro::catalogue.find("gyroscope");
+  const auto of = [&](std::string_view reason) {
+    return remedy(client::Refused{&gyroscope, "di_wheel_drive", reason});
+  };
+  CHECK(of("not_schedulable") ==
+        "ask for a longer period or stop another stream: `amiroctl publish gyroscope --dry-run --explain "
+        "--listen 2s` shows what runs, and the shortest period that passes");
+  CHECK(of("not_served") ==
+        "di_wheel_drive accepts what its firmware serves: flash one that serves gyroscope");
+  CHECK(of("bad_period") == "it accepts 1us to 65535s: `amiroctl publish gyroscope 50ms`");
+  for (const char* const reason : {"bad_length", "bad_mode", "bad_unit"})
+    CHECK(of(reason) ==
+          "`amiroctl info gyroscope` says what this tool's spec accepts; `amiroctl doctor` says whether the "
+          "board was built from another one");
+  CHECK(of("out_of_range") == "`amiroctl info gyroscope` says which values it accepts");
+  for (const char* const reason : {"no_sample", "no_answer", "bus_fault", ""})
+    CHECK(of(reason) ==
+          "`amiroctl doctor` says which parts do not answer; when they do, it accepts the same again");
+}
+
 TEST_CASE("remedies: each counter is a finding of its own, and zero is none") {
   CHECK(cli::findings_of({.sent = 1, .received = 2, .refused = 3}, {.frames = 4, .samples = 5, .commands = 6})
             .empty());
