@@ -66,7 +66,7 @@ class Misspelt(Case):
     # Arguments, and the message.
     WORDS = {
         "bench": [("--lst", "no option '--lst'; did you mean '--list'?"), ("codc", "no benchmark 'codc'; did you mean 'codec'?")],
-        "build": [("frimware", "no build 'frimware'; did you mean 'firmware'?"), ("x", "no build 'x'; there are firmware, avr, operator"),
+        "build": [("frimware", "no build 'frimware'; did you mean 'firmware'?"), ("--hlep", "no option '--hlep'; did you mean '--help'?"), ("x", "no build 'x'; there are firmware, avr, operator"),
                   ("-DA=1 firmware", "'firmware' comes first: scripts/build firmware [CMAKE ARGUMENT...]"),
                   ("-j2", "'-j2' is for cmake --build; how many files to compile at once: OCM_JOBS=2 scripts/build")],
         "demo": [("--hlep", "no option '--hlep'; did you mean '--help'?"),
