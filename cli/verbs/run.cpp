@@ -41,14 +41,15 @@ constexpr std::size_t max_script = 16U << 20U;
 
 std::string read_script(const std::string& file) {
   auto [text, failure, too_long] = logs::read_file(file, max_script);
+  const std::string name = file == "-" ? "the standard input" : file;
   if (!failure.empty())
-    fail({fmt::format("cannot read {}: {}", file == "-" ? "the standard input" : file, failure),
+    fail({fmt::format("cannot read {}: {}", name, failure),
           "give the name of a script, or - for standard input"});
   if (too_long)
-    fail({fmt::format("{} is larger than {} MiB", file, max_script >> 20U),
+    fail({fmt::format("{} is larger than {} MiB", name, max_script >> 20U),
           "a script has one command a line"});
   if (const auto at = text.find('\0'); at != std::string::npos)
-    fail({fmt::format("{} is no text: line {} has a byte of zero", file,
+    fail({fmt::format("{} is no text: line {} has a byte of zero", name,
                       std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n') + 1),
           "a script has one command a line"},
          exit_usage);

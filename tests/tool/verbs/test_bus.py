@@ -425,6 +425,9 @@ class Scripts(Case):
         _, err = self.run_tool("run", self.script("0s led 1 red\n0s led\0 1 red\n"), "--dry-run", code=2)
         self.assertRegex(err, r"^amiroctl: run: \S* is no text: line 2 has a byte of zero\n +a script has one command a line\n$")
 
+        _, err = self.run_tool("run", "-", "--dry-run", stdin="\0", code=2)
+        self.assertIn("amiroctl: run: the standard input is no text: line 1", err)
+
     def test_a_missing_script(self):
         _, err = self.run_tool("run", os.path.join(self.folder, "none.script"), code=1)
         self.assertIn("none.script", err)
