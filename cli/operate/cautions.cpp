@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "generator/spec/checker.hpp"
+#include "generator/spec/node_reader.hpp"
 
 namespace ocm::cli::operate {
 namespace {

@@ -7,7 +7,7 @@
 #include "ocm/reflective/check.hpp"
 
 #include "cli/words/value.hpp"
-#include "generator/spec/checker.hpp"
+#include "generator/spec/node_reader.hpp"
 
 namespace ocm::cli::operate {
 namespace {

@@ -15,7 +15,7 @@ using reflective::none;
 using spec::Kind;
 
 std::optional<base::Duration> ValueReader::duration(const At& at, base::Duration longest) {
-  const auto read = Checker::duration(at);
+  const auto read = NodeReader::duration(at);
   if (!read || *read <= longest) return read;
   const std::string most = spec::quoted(words::to_text(longest));
   tell(at, spec::quoted(at.node->text) + " is too long", "at most " + most);

@@ -13,7 +13,7 @@
 #include "ocm/reflective/operator.hpp"
 
 #include "cli/operate/operator_file.hpp"
-#include "generator/spec/checker.hpp"
+#include "generator/spec/node_reader.hpp"
 #include "generator/spec/problem.hpp"
 
 namespace ocm::cli::operate {
@@ -37,12 +37,12 @@ struct FieldRef {
 
 /// What each reader of a part builds on. Every function tells of a problem and has a value that does no harm
 /// then.
-class ValueReader : protected spec::Checker {
+class ValueReader : protected spec::NodeReader {
  protected:
   using At = spec::At;
 
   explicit ValueReader(const Reading& reading)
-      : Checker(reading.file_name, reading.problems), catalogue_(reading.catalogue) {}
+      : NodeReader(reading.file_name, reading.problems), catalogue_(reading.catalogue) {}
 
   /// Longer ones would make sums with a clock overflow, and wait for nothing.
   static constexpr base::Duration longest_time{std::chrono::hours{24}};

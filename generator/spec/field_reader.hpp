@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include "generator/spec/checker.hpp"
 #include "generator/spec/names.hpp"
+#include "generator/spec/node_reader.hpp"
 
 namespace ocm::spec {
 
@@ -26,9 +26,9 @@ inline constexpr std::string_view derived_form =
     R"("derived": [{"name": "distance", "of": "proximity", "law": "inverse_square", "at_one": 0.94, )"
     R"("offset": 2300, "noise": 4.6, "unit": "m", "range": [0.004, 0.2]}])";
 
-class FieldReader : protected Checker {
+class FieldReader : protected NodeReader {
  public:
-  using Checker::Checker;
+  using NodeReader::NodeReader;
 
  protected:
   /// A member of a generated struct.

@@ -13,14 +13,14 @@
 
 #include "ocm/j1939/identifier.hpp"
 
-#include "generator/spec/checker.hpp"
+#include "generator/spec/node_reader.hpp"
 
 namespace ocm::spec {
 
-class MessageReader : private Checker {
+class MessageReader : private NodeReader {
  public:
   MessageReader(std::string_view file_name, std::vector<Problem>& problems, std::vector<Problem>& doubts)
-      : Checker(file_name, problems), doubts_(doubts) {}
+      : NodeReader(file_name, problems), doubts_(doubts) {}
 
   /// Into `model`, the boards of which are known. `taken`: names and aliases of topics, and where.
   void read(const At& at, protocol::ByteOrder order, std::map<std::string, std::string> taken, Model& model) {

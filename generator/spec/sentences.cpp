@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <tuple>
 
-#include "generator/spec/checker.hpp"
 #include "generator/spec/file.hpp"
+#include "generator/spec/node_reader.hpp"
 #include "generator/spec/schema.hpp"
 
 namespace ocm::spec {
@@ -25,9 +25,9 @@ constexpr std::int64_t packed_overhead = 4;
 
 constexpr std::string_view sorts = R"(either "letter" and "word", or "letter" and "fields", or "text" alone)";
 
-class SentencesReader : private Checker {
+class SentencesReader : private NodeReader {
  public:
-  using Checker::Checker;
+  using NodeReader::NodeReader;
 
   SentencesModel read(const Node& node) {
     const At root{&node, ""};

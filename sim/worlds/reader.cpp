@@ -9,9 +9,9 @@
 
 #include "ocm/mapper/link/prefix.hpp"
 
-#include "generator/spec/checker.hpp"
 #include "generator/spec/file.hpp"
 #include "generator/spec/json.hpp"
+#include "generator/spec/node_reader.hpp"
 #include "generator/spec/schema.hpp"
 #include "sim/worlds/texts.hpp"
 
@@ -50,9 +50,9 @@ std::string print(double number) {
   return {text.data(), static_cast<std::size_t>(length)};
 }
 
-class Reader : private spec::Checker {
+class Reader : private spec::NodeReader {
  public:
-  using Checker::Checker;
+  using NodeReader::NodeReader;
 
   WorldModel read(const spec::Node& node) {
     const At root{&node, ""};

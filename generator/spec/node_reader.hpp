@@ -1,5 +1,5 @@
-/// Reading single values of a document's JSON, and telling what is wrong with them: what the readers of specs
-/// and of worlds stand on. For their reader.cpp only.
+/// Reading single values of a document's JSON, and telling what is wrong with them: what the readers of
+/// specs, of worlds and of operator files stand on.
 #pragma once
 
 #include <algorithm>
@@ -74,9 +74,9 @@ inline constexpr std::string_view name_form =
 inline constexpr std::string_view duration_form = "a number with ns, us, ms or s: \"50ms\"";
 
 /// Each function reads one value, and tells what is wrong with it where it cannot.
-class Checker {
+class NodeReader {
  public:
-  Checker(std::string_view file_name, std::vector<Problem>& problems)
+  NodeReader(std::string_view file_name, std::vector<Problem>& problems)
       : file_name_(file_name), problems_(problems) {}
 
  protected:
