@@ -10,8 +10,6 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "ocm/can/frame.hpp"
-
 namespace ocm::cli::analyse {
 
 /// The times of frames are no finer: candump writes microseconds.
@@ -96,11 +94,5 @@ class Meter {
   std::size_t in_window_ = 0;
   bool rested_ = false;  ///< the last set point ended its run
 };
-
-/// Whether a set point commands rest: all its fields are zero.
-[[nodiscard]] inline bool is_rest(const can::Frame& set_point) noexcept {
-  const auto bytes = set_point.bytes();
-  return std::all_of(bytes.begin(), bytes.end(), [](std::uint8_t byte) { return byte == 0; });
-}
 
 }  // namespace ocm::cli::analyse

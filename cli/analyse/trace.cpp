@@ -180,7 +180,7 @@ class SeenTopics {
       its.priority = id.priority;
       its.sent = true;
       if (frame.frame != 0) return;
-      its.distances.add(arrival.time, is_rest(arrival.frame));
+      its.distances.add(arrival.time, client::is_rest(arrival.frame));
       its.key = can::arbitration_key(arrival.frame);
     }
   }
@@ -369,7 +369,7 @@ TraceStudy study_trace(const std::string& log_file, const std::string& set_file,
     if (row < set.entries.size()) {
       const Pace& pace = pace_of_row[row];
       meters[row].add(arrival.time, arrival.length, takes(arrival.bits), pace.period, pace.grid,
-                      pace.grid == Grid::of_run && is_rest(arrival.frame));
+                      pace.grid == Grid::of_run && client::is_rest(arrival.frame));
     } else if (set_file.empty() && has_packets && is_packet(arrival.frame.id, arrival.frame.format)) {
       ++packets;
     } else if (set_file.empty() && !can::is_extended(arrival.frame.format) &&

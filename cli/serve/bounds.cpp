@@ -70,7 +70,7 @@ void Bounds::take(const log::Entry& entry) {
   const bool held = protocol::Identifier::decode(frame->id).direction == protocol::Direction::command;
   meters_[row->second].add(
       entry.time.time_since_epoch().count(), frame->dlc, takes, set_.entries[row->second].period,
-      held ? analyse::Grid::of_run : analyse::Grid::of_sender, held && analyse::is_rest(*frame));
+      held ? analyse::Grid::of_run : analyse::Grid::of_sender, held && client::is_rest(*frame));
 }
 
 std::string Bounds::state() const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "ocm/can/frame.hpp"
+#include "ocm/client/command.hpp"
 #include "ocm/client/frame_index.hpp"
 #include "ocm/protocol/topic.hpp"
 
@@ -10,10 +11,7 @@ namespace ocm::cli {
 /// The motors that the frame commands; nullptr if it is no set point of motors.
 [[nodiscard]] const protocol::Topic* commanded_motors(const client::FrameIndex& index,
                                                       const can::Frame& frame);
-/// The set point commands rest: every field is zero.
-[[nodiscard]] inline bool is_rest(const can::Frame& set_point) {
-  return set_point.data == can::Payload{};
-}
+using client::is_rest;
 
 /// Zeros that end a motion: of motors, or of what a board does by itself until a time has passed. No limit
 /// and no permission is asked for them.

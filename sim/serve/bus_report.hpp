@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "ocm/client/diagnosis.hpp"
 #include "ocm/simulation/virtual_bus_server.hpp"
 
 #include "sim/serve/shell.hpp"
@@ -13,15 +14,16 @@ namespace ocm::sim {
 inline void report_bus(const simulation::VirtualBusServer& server, bool disturbed, const Shell& shell) {
   const auto& bus = server.arbiter().totals();
   const auto& clients = server.counters();
-  shell.report(fmt::format(
-      "bus               {} frames, {} clients, {} turned away, {} misbehaved, {} frames lost by slow ones",
-      bus.frames, clients.welcomed, clients.turned_away, clients.misbehaved, clients.overruns));
+  shell.report(fmt::format("bus               {}, {}, {} turned away, {} misbehaved, {} lost by slow ones",
+                           client::count(bus.frames, "frame*"), client::count(clients.welcomed, "client*"),
+                           clients.turned_away, clients.misbehaved,
+                           client::count(clients.overruns, "frame*")));
   if (disturbed)
-    shell.report(
-        fmt::format("                  {} error frames, {} frames repeated", bus.errors, bus.repetitions));
+    shell.report(fmt::format("                  {}, {} repeated", client::count(bus.errors, "error frame*"),
+                             client::count(bus.repetitions, "frame*")));
   if (bus.clashes != 0)
-    shell.report(
-        fmt::format("                  {} times two senders at once with the same identifier", bus.clashes));
+    shell.report(fmt::format("                  {} two senders at once with the same identifier",
+                             client::count(bus.clashes, "time*")));
 }
 
 }  // namespace ocm::sim

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "ocm/base/time.hpp"
+#include "ocm/client/command.hpp"
 #include "ocm/client/frame_index.hpp"
 #include "ocm/protocol/identifier.hpp"
 #include "ocm/protocol/topic.hpp"
@@ -18,7 +19,8 @@ class Turns {
   /// The catalogue must outlive it.
   explicit Turns(const protocol::Catalogue& catalogue) : index_(catalogue) {}
 
-  /// A frame that was on the bus. O(1).
+  /// A frame that was on the bus. The zero with which a program ends, because another one has stopped the
+  /// actuator, is no turn. O(1).
   void take(const simulation::Delivery& delivery) {
     if (delivery.frame.format != can::Format::base) return;
     const auto id = protocol::Identifier::decode(delivery.frame.id);
@@ -28,7 +30,8 @@ class Turns {
     Senders& senders = senders_[id.topic.value];
     senders.topic = ref.topic;
     if (delivery.from != senders.last) {
-      if (delivery.from == senders.before && delivery.time - senders.before_time < ref.topic->timeout)
+      if (delivery.from == senders.before && delivery.time - senders.before_time < ref.topic->timeout &&
+          !client::is_rest(delivery.frame))
         ++senders.turns;
       senders.before = senders.last;
       senders.before_time = senders.last_time;

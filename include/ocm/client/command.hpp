@@ -2,6 +2,7 @@
 /// it with the functions below. Host only.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -27,6 +28,11 @@ struct Hold {
   base::Duration lasting{};  ///< zero: until another drive or a stop
 };
 inline constexpr base::Duration hold_period{100'000'000};
+/// Whether a set point commands rest: all its fields are zero.
+[[nodiscard]] constexpr bool is_rest(const can::Frame& set_point) noexcept {
+  const auto bytes = set_point.bytes();
+  return std::all_of(bytes.begin(), bytes.end(), [](std::uint8_t byte) { return byte == 0; });
+}
 /// After this long without a set point a board's watchdog stops the motors, and a program that holds one must
 /// not go on as if nothing had been. [spec/topics.json: watchdog of motors, 500 ms]
 inline constexpr base::Duration longest_without_set_point{500'000'000};

@@ -26,9 +26,9 @@ using simulation::NodeId;
 constexpr NodeId one{1, 1}, two{2, 1}, three{3, 1};
 
 /// A set point of the motors, the timeout of which is half a second.
-Delivery motors(NodeId from, base::Duration at) {
+Delivery motors(NodeId from, base::Duration at, std::uint8_t speed = 1) {
   Delivery delivery;
-  delivery.frame = {0x200U + amiro::Motors::id.value, 8, {}};
+  delivery.frame = {0x200U + amiro::Motors::id.value, 8, {speed}};
   delivery.from = from;
   delivery.time = base::Time{at};
   return delivery;
@@ -57,6 +57,9 @@ TEST_CASE("turns: two senders that command one actuator, each within the other's
   CHECK(turns_of({motors(one, 0ms), motors(two, 100ms), motors(one, 500ms)}) == 0);
   CHECK(turns_of({motors(one, 0ms), motors(one, 400ms), motors(two, 450ms), motors(one, 899ms)}) == 1);
   CHECK(turns_of({motors(one, 0ms), motors(one, 400ms), motors(two, 450ms), motors(one, 900ms)}) == 0);
+  // A stop ends a drive, which says zero then; a drive that goes on after a stop is another matter.
+  CHECK(turns_of({motors(one, 0ms), motors(two, 100ms, 0), motors(one, 200ms, 0)}) == 0);
+  CHECK(turns_of({motors(one, 0ms), motors(two, 100ms, 0), motors(one, 200ms)}) == 1);
   // Of three each is the last one's last one no more.
   CHECK(turns_of({motors(one, 0ms), motors(two, 10ms), motors(three, 20ms), motors(one, 30ms)}) == 0);
 }

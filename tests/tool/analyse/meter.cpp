@@ -57,10 +57,4 @@ TEST_CASE("meter: what is sent on events is behind nothing") {
   CHECK(event.longest == 660 * ms);
 }
 
-TEST_CASE("meter: a set point at rest has no byte but zeros") {
-  CHECK(is_rest({0x201, 8, {}}));
-  CHECK_FALSE(is_rest({0x201, 8, {0, 0, 0, 0, 0, 0, 0, 1}}));
-  CHECK(is_rest({0x201, 2, {0, 0, 1}}));
-}
-
 }  // namespace analyse_meter_test

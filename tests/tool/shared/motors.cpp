@@ -38,8 +38,6 @@ TEST_CASE("motors: a set point of theirs, at any priority, and nothing else") {
   can::Frame extended = frame(0x201, 8);
   extended.format = can::Format::extended;
   CHECK(name(extended).empty());
-  CHECK(is_rest(frame(0x201, 8)));
-  CHECK_FALSE(is_rest(frame(0x201, 8, 1)));
 }
 
 TEST_CASE("motors: what a board does by itself, by its name") {

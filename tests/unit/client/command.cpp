@@ -31,6 +31,12 @@ TEST_CASE("a set point has the actuator's identifier, and zero where nothing is 
         set_point(topic("led_1"), std::array<std::int64_t, 3>{1, 2, 3}));
 }
 
+TEST_CASE("a set point at rest has no byte but zeros") {
+  CHECK(client::is_rest({0x201, 8, {}}));
+  CHECK_FALSE(client::is_rest({0x201, 8, {0, 0, 0, 0, 0, 0, 0, 1}}));
+  CHECK(client::is_rest({0x201, 2, {0, 0, 1}}));
+}
+
 TEST_CASE("a set point that is held comes in time for the board's watchdog") {
   // [spec/topics.json: watchdog of motors, 500 ms]
   CHECK(client::longest_without_set_point == std::chrono::milliseconds{500});
