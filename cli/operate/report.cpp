@@ -180,98 +180,114 @@ std::string to_table(const Study& study) {
   return text;
 }
 
+namespace {
+
+Json name_of(const reflective::Operator& tables, std::uint16_t configuration) {
+  return configuration == none ? Json(nullptr) : Json(tables.configurations[configuration].name);
+}
+
+/// What a bound is made of, each part in nanoseconds.
+template <typename Bound>
+Json parts_of(const Bound& bound) {
+  Json parts = Json::object();
+  for (const auto& part : bound.parts()) parts[part.name] = part.time;
+  return parts;
+}
+
+Json json_of(const StreamBound& stream, const reflective::Operator& tables) {
+  Json recovery;
+  if (stream.recovery.bounded)
+    recovery = {{"at_most_ns", nanoseconds(stream.recovery.total())},
+                {"while_changing_ns", nanoseconds(stream.recovery.at_worst())},
+                {"parts_ns", parts_of(stream.recovery)}};
+  return {{"topic", tables.topic(stream.topic).name},
+          {"period_ns", stream.period.count()},
+          {"priority", name(stream.priority)},
+          {"response_ns", nanoseconds(stream.response)},
+          {"on_board_ns", stream.on_board == 0 ? Json(nullptr) : nanoseconds(stream.on_board)},
+          {"deadline_ns", stream.deadline},
+          {"recovery", recovery}};
+}
+
+Json json_of_configuration(const Study& study, std::size_t number) {
+  const auto& tables = study.file->tables;
+  const auto& parts = study.file->parts[number];
+  Json streams = Json::array(), others = Json::array(), uncounted = Json::array();
+  for (const StreamBound& stream : study.configurations[number].streams)
+    streams.push_back(json_of(stream, tables));
+  for (const auto& each : parts.expected)
+    others.push_back({{"topic", tables.topic(each.topic).name},
+                      {"period_ns", each.period.count()},
+                      {"priority", name(each.priority)}});
+  for (const std::uint16_t topic : parts.uncounted) uncounted.push_back(tables.topic(topic).name);
+  return {{"name", tables.configurations[number].name},
+          {"load_per_mille", nanoseconds(study.configurations[number].load)},
+          {"streams", streams},
+          {"others", others},
+          {"not_counted", uncounted}};
+}
+
+Json json_of(const ReactionBound& reaction, const Study& study) {
+  const auto& tables = study.file->tables;
+  const auto& transition = tables.transitions[reaction.transition];
+  const auto with_parts = [&](Json& of, const reflective::Latency& latency) {
+    if (!latency.bounded) return;
+    of["parts_ns"] = parts_of(latency);
+    if (latency.condition != none) of["condition"] = watched(study, reaction.transition, latency);
+  };
+  Json object{{"cause", transition.cause},
+              {"from", name_of(tables, reaction.from)},
+              {"to", name_of(tables, transition.to)},
+              {"on_request", transition.monitor == reflective::by_request},
+              {"seen", reaction.seen},
+              {"commands", reaction.commands},
+              {"at_most_ns", nanoseconds(reaction.latency.total())},
+              {"while_changing_ns", nanoseconds(reaction.latency.at_worst())}};
+  with_parts(object, reaction.latency);
+  Json conditions = Json::array();
+  for (const reflective::Latency& latency : reaction.conditions) {
+    Json each{{"at_most_ns", nanoseconds(latency.total())}};
+    with_parts(each, latency);
+    conditions.push_back(each);
+  }
+  if (!reaction.conditions.empty()) object["conditions"] = conditions;
+  return object;
+}
+
+Json json_of(const std::vector<spec::Problem>& problems) {
+  Json list = Json::array();
+  for (const auto& each : problems)
+    list.push_back({{"place", each.place}, {"what", each.what}, {"remedy", each.remedy}});
+  return list;
+}
+
+}  // namespace
+
 std::string to_json(const Study& study) {
   const auto& tables = study.file->tables;
-  const auto name_of = [&](std::uint16_t c) {
-    return c == none ? Json(nullptr) : Json(tables.configurations[c].name);
-  };
-  Json configurations = Json::array();
-  for (std::size_t c = 0; c < study.configurations.size(); ++c) {
-    Json streams = Json::array();
-    for (const StreamBound& stream : study.configurations[c].streams) {
-      Json recovery;
-      if (stream.recovery.bounded) {
-        Json parts = Json::object();
-        for (const auto& part : stream.recovery.parts()) parts[part.name] = part.time;
-        recovery = {{"at_most_ns", nanoseconds(stream.recovery.total())},
-                    {"while_changing_ns", nanoseconds(stream.recovery.at_worst())},
-                    {"parts_ns", parts}};
-      }
-      streams.push_back({{"topic", tables.topic(stream.topic).name},
-                         {"period_ns", stream.period.count()},
-                         {"priority", name(stream.priority)},
-                         {"response_ns", nanoseconds(stream.response)},
-                         {"on_board_ns", stream.on_board == 0 ? Json(nullptr) : nanoseconds(stream.on_board)},
-                         {"deadline_ns", stream.deadline},
-                         {"recovery", recovery}});
-    }
-    Json others = Json::array(), uncounted = Json::array();
-    for (const auto& each : study.file->parts[c].expected)
-      others.push_back({{"topic", tables.topic(each.topic).name},
-                        {"period_ns", each.period.count()},
-                        {"priority", name(each.priority)}});
-    for (const std::uint16_t topic : study.file->parts[c].uncounted)
-      uncounted.push_back(tables.topic(topic).name);
-    configurations.push_back({{"name", tables.configurations[c].name},
-                              {"load_per_mille", nanoseconds(study.configurations[c].load)},
-                              {"streams", streams},
-                              {"others", others},
-                              {"not_counted", uncounted}});
-  }
-  Json changes = Json::array();
+  Json configurations = Json::array(), changes = Json::array(), reactions = Json::array(),
+       unmeasured = Json::array();
+  for (std::size_t c = 0; c < study.configurations.size(); ++c)
+    configurations.push_back(json_of_configuration(study, c));
   for (const ChangeBound& change : study.changes)
-    changes.push_back({{"from", name_of(change.from)},
-                       {"to", name_of(change.to)},
+    changes.push_back({{"from", name_of(tables, change.from)},
+                       {"to", name_of(tables, change.to)},
                        {"over_after_ns", nanoseconds(change.over_after)},
                        {"load_per_mille", nanoseconds(change.load)}});
-  Json reactions = Json::array();
-  for (const ReactionBound& reaction : study.reactions) {
-    const auto& transition = tables.transitions[reaction.transition];
-    Json one{{"cause", transition.cause},
-             {"from", name_of(reaction.from)},
-             {"to", name_of(transition.to)},
-             {"on_request", transition.monitor == reflective::by_request},
-             {"seen", reaction.seen},
-             {"commands", reaction.commands},
-             {"at_most_ns", nanoseconds(reaction.latency.total())},
-             {"while_changing_ns", nanoseconds(reaction.latency.at_worst())}};
-    const auto with_parts = [&](Json& of, const reflective::Latency& latency) {
-      if (!latency.bounded) return;
-      Json parts = Json::object();
-      for (const auto& part : latency.parts()) parts[part.name] = part.time;
-      of["parts_ns"] = parts;
-      if (latency.condition != none) of["condition"] = watched(study, reaction.transition, latency);
-    };
-    with_parts(one, reaction.latency);
-    Json conditions = Json::array();
-    for (const reflective::Latency& latency : reaction.conditions) {
-      Json each{{"at_most_ns", nanoseconds(latency.total())}};
-      with_parts(each, latency);
-      conditions.push_back(each);
-    }
-    if (!reaction.conditions.empty()) one["conditions"] = conditions;
-    reactions.push_back(one);
-  }
-  Json unmeasured = Json::array();
+  for (const ReactionBound& reaction : study.reactions) reactions.push_back(json_of(reaction, study));
   for (const std::uint16_t topic : study.unmeasured) unmeasured.push_back(tables.topic(topic).name);
-  const auto listed = [](const std::vector<spec::Problem>& problems) {
-    Json list = Json::array();
-    for (const auto& each : problems)
-      list.push_back({{"place", each.place}, {"what", each.what}, {"remedy", each.remedy}});
-    return list;
-  };
-  Json object{{"operator", tables.name},
-              {"bit_rate", study.bit_rate},
-              {"initial", name_of(tables.initial)},
-              {"fall_back", name_of(tables.fall_back)},
-              {"settle_ns", tables.settle.count()},
-              {"configurations", configurations},
-              {"changes", changes},
-              {"reactions", reactions},
-              {"sampling_not_counted", unmeasured},
-              {"in_time", study.passes()},
-              {"doubts", listed(study.doubts)},
-              {"cautions", listed(study.cautions)}};
+  const Json object{{"operator", tables.name},
+                    {"bit_rate", study.bit_rate},
+                    {"initial", name_of(tables, tables.initial)},
+                    {"fall_back", name_of(tables, tables.fall_back)},
+                    {"settle_ns", tables.settle.count()},
+                    {"configurations", configurations},
+                    {"changes", changes},
+                    {"reactions", reactions},
+                    {"sampling_not_counted", unmeasured},
+                    {"in_time", study.passes()},
+                    {"doubts", json_of(study.doubts)},
+                    {"cautions", json_of(study.cautions)}};
   return object.lines();
 }
 

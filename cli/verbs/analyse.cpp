@@ -254,6 +254,87 @@ void add_bus_options(Verb verb, Options& options) {
       .type_name("MODEL");
 }
 
+void add_bus(Verb outer, Session& session, int& exit_code) {
+  const auto options = std::make_shared<Options>();
+  const auto verb =
+      outer.add_inner_verb("bus", "the messages of a CAN bus: the robot's own, or a FILE's",
+                           "  amiroctl analyse bus\n"
+                           "  amiroctl analyse bus --rates gyro=50ms ring=2ms@high\n"
+                           "  amiroctl analyse bus messages.csv --bitrate 125k --svg worst-case.svg\n"
+                           "  amiroctl analyse bus --queue di_wheel_drive=fifo\n"
+                           "  amiroctl analyse bus --rates ring=4ms@low --assign priorities");
+  verb.add_option(
+      "FILE", options->file,
+      "CSV (name,id,dlc,period_ns,deadline_ns,jitter_ns,node,offset_ns,fd) or a spec, DBC or JSON; "
+      "none: the robot's topics");
+  add_bus_options(verb, *options);
+  verb.add_option("--queue", options->queues,
+                  "NODE=fifo: it sends in the order of release; NODE=mailboxes:N: what is in one of its N "
+                  "mailboxes is not taken back. Several; default: each node sends its most urgent first")
+      .type_name("QUEUE");
+  verb.add_option("--assign", options->assign,
+                  "identifiers: hand out those that there are; priorities: choose the robot's. So that all "
+                  "meet their deadlines, if that is possible")
+      .one_of({"identifiers", "priorities"});
+  add_outputs(verb, *options);
+  verb.callback([options, &session, &exit_code] { exit_code = bus(*options, session); });
+}
+
+void add_tasks(Verb outer, Session& session, int& exit_code) {
+  const auto options = std::make_shared<Options>();
+  const auto verb = outer.add_inner_verb(
+      "tasks", "the tasks of a processor",
+      "  amiroctl analyse tasks tasks.csv --json\n"
+      "  amiroctl analyse tasks di_wheel_drive --context-switch 2us --tick 1ms --tick-cost 3us");
+  verb.add_option("FILE|BOARD", options->file,
+                  fmt::format("CSV: name,priority,C_ns,T_ns,D_ns,J_ns,B_ns; or one of {}",
+                              fmt::join(own_task_sets(), ", ")))
+      .required();
+  add_duration(verb, "--context-switch", options->context_switch,
+               "what one costs; a job pays two. Default: nothing");
+  add_duration(verb, "--interrupt", options->interrupt,
+               "what each release of each task costs ahead of all priorities. Default: nothing");
+  add_duration(verb, "--lock", options->lock,
+               "the longest stretch with interrupts off: each task may wait for one. Default: none");
+  const auto tick =
+      add_duration(verb, "--tick", options->tick, "the system's timer interrupt comes so often");
+  add_duration(verb, "--tick-cost", options->tick_cost, "and costs so much. Default: nothing").needs(tick);
+  verb.add_flag("--released-by-tick", options->released_by_tick,
+                "releases are noticed at ticks only: a tick more jitter for each task")
+      .needs(tick);
+  add_outputs(verb, *options);
+  verb.callback([options, &session, &exit_code] { exit_code = tasks(*options, session); });
+}
+
+void add_chain(Verb outer, Session& session, int& exit_code) {
+  const auto options = std::make_shared<Options>();
+  const auto verb = outer.add_inner_verb("chain", "from a sensor to a motor, over tasks and frames",
+                                         "  amiroctl analyse chain chain.csv --deadline 50ms\n"
+                                         "  amiroctl analyse chain chain.csv --rates gyro=10ms --json");
+  verb.add_option("FILE", options->file, "CSV: hop,set,activation,response_ns,best_ns,period_ns").required();
+  add_duration(verb, "--deadline", options->deadline,
+               "from an event to the end of the reaction; default: none");
+  add_bus_options(verb, *options);
+  const auto json = verb.add_flag("--json", options->json, "one object, for programs");
+  verb.add_flag("--csv", options->csv, "a line a hop, times in nanoseconds").excludes(json);
+  verb.callback([options, &session, &exit_code] { exit_code = chain(*options, session); });
+}
+
+void add_trace(Verb outer, Session& session, int& exit_code) {
+  const auto options = std::make_shared<Options>();
+  const auto verb = outer.add_inner_verb("trace", "a recorded log, held against the bounds",
+                                         "  amiroctl analyse trace drive.log\n"
+                                         "  amiroctl analyse trace drive.log --set car.dbc --csv");
+  verb.add_option("LOG", options->file, "in any format that convert reads; - for standard input").required();
+  verb.add_option("--set", options->set,
+                  "its messages, CSV or DBC; default: the robot's topics that are in it")
+      .type_name("FILE");
+  add_bus_options(verb, *options);
+  const auto json = verb.add_flag("--json", options->json, "one object, for programs");
+  verb.add_flag("--csv", options->csv, "a line a message, times in nanoseconds").excludes(json);
+  verb.callback([options, &session, &exit_code] { exit_code = trace(*options, session); });
+}
+
 }  // namespace
 
 void add_analyse(Verb app, Session& session, int& exit_code) {
@@ -264,87 +345,10 @@ void add_analyse(Verb app, Session& session, int& exit_code) {
                            "  amiroctl analyse trace drive.log");
   verb.alias("analyze");
   verb.require_verb();
-
-  const auto of_bus = std::make_shared<Options>();
-  auto bus_verb =
-      verb.add_inner_verb("bus", "the messages of a CAN bus: the robot's own, or a FILE's",
-                          "  amiroctl analyse bus\n"
-                          "  amiroctl analyse bus --rates gyro=50ms ring=2ms@high\n"
-                          "  amiroctl analyse bus messages.csv --bitrate 125k --svg worst-case.svg\n"
-                          "  amiroctl analyse bus --queue di_wheel_drive=fifo\n"
-                          "  amiroctl analyse bus --rates ring=4ms@low --assign priorities");
-  bus_verb.add_option(
-      "FILE", of_bus->file,
-      "CSV (name,id,dlc,period_ns,deadline_ns,jitter_ns,node,offset_ns,fd) or a spec, DBC or JSON; "
-      "none: the robot's topics");
-  add_bus_options(bus_verb, *of_bus);
-  bus_verb
-      .add_option("--queue", of_bus->queues,
-                  "NODE=fifo: it sends in the order of release; NODE=mailboxes:N: what is in one of its N "
-                  "mailboxes is not taken back. Several; default: each node sends its most urgent first")
-      .type_name("QUEUE");
-  bus_verb
-      .add_option("--assign", of_bus->assign,
-                  "identifiers: hand out those that there are; priorities: choose the robot's. So that all "
-                  "meet their deadlines, if that is possible")
-      .one_of({"identifiers", "priorities"});
-  add_outputs(bus_verb, *of_bus);
-  bus_verb.callback([of_bus, &session, &exit_code] { exit_code = bus(*of_bus, session); });
-
-  const auto of_tasks = std::make_shared<Options>();
-  auto tasks_verb = verb.add_inner_verb(
-      "tasks", "the tasks of a processor",
-      "  amiroctl analyse tasks tasks.csv --json\n"
-      "  amiroctl analyse tasks di_wheel_drive --context-switch 2us --tick 1ms --tick-cost 3us");
-  tasks_verb
-      .add_option("FILE|BOARD", of_tasks->file,
-                  fmt::format("CSV: name,priority,C_ns,T_ns,D_ns,J_ns,B_ns; or one of {}",
-                              fmt::join(own_task_sets(), ", ")))
-      .required();
-  add_duration(tasks_verb, "--context-switch", of_tasks->context_switch,
-               "what one costs; a job pays two. Default: nothing");
-  add_duration(tasks_verb, "--interrupt", of_tasks->interrupt,
-               "what each release of each task costs ahead of all priorities. Default: nothing");
-  add_duration(tasks_verb, "--lock", of_tasks->lock,
-               "the longest stretch with interrupts off: each task may wait for one. Default: none");
-  const auto tick =
-      add_duration(tasks_verb, "--tick", of_tasks->tick, "the system's timer interrupt comes so often");
-  add_duration(tasks_verb, "--tick-cost", of_tasks->tick_cost, "and costs so much. Default: nothing")
-      .needs(tick);
-  tasks_verb
-      .add_flag("--released-by-tick", of_tasks->released_by_tick,
-                "releases are noticed at ticks only: a tick more jitter for each task")
-      .needs(tick);
-  add_outputs(tasks_verb, *of_tasks);
-  tasks_verb.callback([of_tasks, &session, &exit_code] { exit_code = tasks(*of_tasks, session); });
-
-  const auto of_chain = std::make_shared<Options>();
-  auto chain_verb = verb.add_inner_verb("chain", "from a sensor to a motor, over tasks and frames",
-                                        "  amiroctl analyse chain chain.csv --deadline 50ms\n"
-                                        "  amiroctl analyse chain chain.csv --rates gyro=10ms --json");
-  chain_verb.add_option("FILE", of_chain->file, "CSV: hop,set,activation,response_ns,best_ns,period_ns")
-      .required();
-  add_duration(chain_verb, "--deadline", of_chain->deadline,
-               "from an event to the end of the reaction; default: none");
-  add_bus_options(chain_verb, *of_chain);
-  const auto chain_json = chain_verb.add_flag("--json", of_chain->json, "one object, for programs");
-  chain_verb.add_flag("--csv", of_chain->csv, "a line a hop, times in nanoseconds").excludes(chain_json);
-  chain_verb.callback([of_chain, &session, &exit_code] { exit_code = chain(*of_chain, session); });
-
-  const auto of_trace = std::make_shared<Options>();
-  auto trace_verb = verb.add_inner_verb("trace", "a recorded log, held against the bounds",
-                                        "  amiroctl analyse trace drive.log\n"
-                                        "  amiroctl analyse trace drive.log --set car.dbc --csv");
-  trace_verb.add_option("LOG", of_trace->file, "in any format that convert reads; - for standard input")
-      .required();
-  trace_verb
-      .add_option("--set", of_trace->set,
-                  "its messages, CSV or DBC; default: the robot's topics that are in it")
-      .type_name("FILE");
-  add_bus_options(trace_verb, *of_trace);
-  const auto trace_json = trace_verb.add_flag("--json", of_trace->json, "one object, for programs");
-  trace_verb.add_flag("--csv", of_trace->csv, "a line a message, times in nanoseconds").excludes(trace_json);
-  trace_verb.callback([of_trace, &session, &exit_code] { exit_code = trace(*of_trace, session); });
+  add_bus(verb, session, exit_code);
+  add_tasks(verb, session, exit_code);
+  add_chain(verb, session, exit_code);
+  add_trace(verb, session, exit_code);
 }
 
 }  // namespace ocm::cli
