@@ -71,7 +71,9 @@ Misuse unknown_word(Verb program, Verb verb, const std::string& word) {
       if (const auto texts = option.texts(); option.is_positional())
         typed.insert(typed.end(), texts.begin(), texts.end());
     typed.push_back(word);
-    const std::string whole = words::any_written_apart(typed);
+    const std::string whole = words::any_apart(typed, [](std::string_view number, std::string_view unit) {
+      return words::written_apart(number, unit);
+    });
     return {fmt::format("unexpected argument '{}'", word),
             whole.empty() ? "usage: " + usage(verb) : "write it as one word, " + whole};
   }

@@ -139,7 +139,7 @@ class CommandParser {
         return WordError{line.size(), "missing " + std::string{word}, usage(line[0])};
     }
     if (form.empty() || line.size() <= count) return {};
-    const std::string whole = any_written_apart(line.first(count + 1));
+    const std::string whole = any_apart(line.first(count + 1), time_or_speed_apart);
     return WordError{count, "unexpected argument " + detail::quoted(line[count]),
                      whole.empty() ? usage(line[0]) : "write it as one word, " + whole};
   }

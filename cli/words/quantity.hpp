@@ -20,7 +20,7 @@ struct Quantity {
   std::string_view unit;
 };
 
-/// Splits "5cm/s" into 5 and "cm/s". The unit is not looked at.
+/// Splits "5cm/s", or "5 cm/s" as it is printed, into 5 and "cm/s". The unit is not looked at.
 [[nodiscard]] constexpr base::Result<Quantity> parse_quantity(std::string_view text) noexcept {
   std::size_t end = 0;
   if (end < text.size() && (text[end] == '-' || text[end] == '+')) ++end;
@@ -36,6 +36,7 @@ struct Quantity {
   }
   const auto number = base::parse_decimal(text.substr(0, end));
   if (!number) return number.error;
+  if (end + 1 < text.size() && text[end] == ' ') ++end;
   return Quantity{*number, text.substr(end)};
 }
 
@@ -214,18 +215,23 @@ namespace detail {
   return lacks_unit(number) && quantity && quantity->unit == unit ? std::move(whole) : std::string{};
 }
 
-/// "500ms" or "5cm/s", where a time or a speed was written as two words; empty: it was not.
+/// "30cm", where a quantity was written as two words; empty: the second is no unit that is known.
 [[nodiscard]] inline std::string written_apart(std::string_view number, std::string_view unit) {
   std::string whole = as_one_word(number, unit);
-  const auto of_speed = detail::parse_unit(unit);
-  return parse_duration(whole) || (of_speed && of_speed->per != 0) ? std::move(whole) : std::string{};
+  return detail::parse_unit(unit) ? std::move(whole) : std::string{};
 }
 
-/// The same, of the first such two of a line; empty: none was.
-template <typename Words>
-[[nodiscard]] std::string any_written_apart(const Words& words) {
+/// The same of a time or a speed alone: "500ms" or "5cm/s".
+[[nodiscard]] inline std::string time_or_speed_apart(std::string_view number, std::string_view unit) {
+  const auto of = detail::parse_unit(unit);
+  return of && (of->base == "s" || of->per != 0) ? written_apart(number, unit) : std::string{};
+}
+
+/// `apart` of the first two of a line that it takes; empty: it takes none.
+template <typename Words, typename Apart>
+[[nodiscard]] std::string any_apart(const Words& words, Apart apart) {
   for (std::size_t i = 1; i < words.size(); ++i)
-    if (std::string whole = written_apart(words[i - 1], words[i]); !whole.empty()) return whole;
+    if (std::string whole = apart(words[i - 1], words[i]); !whole.empty()) return whole;
   return {};
 }
 

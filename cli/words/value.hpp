@@ -122,12 +122,13 @@ namespace detail {
 }
 
 /// The value of this name. None for a number in the field's unit that the field can be: 2 means 2, although
-/// many files call 1 "2".
+/// many files call 1 "2". With a blank it is a name.
 [[nodiscard]] inline std::optional<std::int64_t> named_raw(const protocol::Field& field,
                                                            std::string_view text) {
   if (field.flags) return std::nullopt;
   for (const auto& value : field.values) {
     if (value.name != text) continue;
+    if (text.find(' ') != std::string_view::npos) return value.raw;
     const auto quantity = quantity_for(field, text);
     const bool is_own = quantity && (quantity->unit.empty() || quantity->unit == field.unit);
     if (is_own && (field.is_float() || field.raw_from(quantity->number).ok())) return std::nullopt;

@@ -178,6 +178,10 @@ drive 5 cm/s 10 deg/s
 drive: unexpected argument '10'
 write it as one word, 5cm/s
 
+travel 30 cm
+travel: unexpected argument 'cm'
+write it as one word, 30cm
+
 publish gyro 500
 publish: '500' needs a unit: us, ms or s
 write 500ms, 2s or 900us

@@ -106,7 +106,8 @@ TEST_CASE("a number that is the name of another value means the number") {
   CHECK(parse_value(x, "1") == 1);
   CHECK(parse_value(x, "1V") == 1);
   CHECK(parse_value(x, "300") == 2);
-  CHECK(parse_value(x, "1.5 V") == 3);  // with a blank it is no number
+  CHECK(parse_value(x, "1.5 V") == 3);  // with a blank it is a name, if there is one
+  CHECK(parse_value(x, "2 V") == 2);
 }
 
 TEST_CASE("floats and 64 bits without sign") {

@@ -35,6 +35,10 @@ static_assert(parse_quantity("1e").value.unit == "e");
 static_assert(parse_quantity("1e-").value.unit == "e-");
 static_assert(parse_quantity("1e3e5").value.unit == "e5");
 static_assert(parse_quantity("+2E-1W").value.unit == "W");
+static_assert(duration("500 ms") == 500ms);  // as one word, from a config file or in quotes
+static_assert(parse_quantity("5  s").value.unit == " s");
+static_assert(parse_quantity("5 ").value.unit == " ");
+static_assert(parse_quantity(" 5").error == base::Error::bad_syntax);
 static_assert(parse_duration("1.5ns").error == base::Error::out_of_range);
 static_assert(parse_duration("99999999999h").error == base::Error::out_of_range);
 
@@ -48,6 +52,7 @@ std::string converted(std::string_view text, std::string_view unit) {
 
 TEST_CASE("units of the same kind convert exactly") {
   CHECK(converted("5cm/s", "m/s") == "0.05");
+  CHECK(converted("5 cm/s", "m/s") == "0.05");
   CHECK(converted("-.1m/s", "m/s") == "-0.1");
   CHECK(converted("50000um/s", "m/s") == "0.05");
   CHECK(converted("3mrad", "rad") == "0.003");
