@@ -4,13 +4,18 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <fcntl.h>
 #include <filesystem>
+#include <sys/file.h>
 #include <unistd.h>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "ocm/host/descriptor.hpp"
+
 #include "cli/logs/opened_log.hpp"
+#include "cli/shared/clock.hpp"
 #include "cli/shared/messages.hpp"
 
 namespace ocm::cli::record {
@@ -27,6 +32,23 @@ bool remove(const std::string& path) {
   return false;
 }
 
+/// Two recordings that begin at once join a ring one after the other: the second sees the file of the first.
+/// As long as what is returned is there; a file system without locks has none.
+transport::Outcome<host::Descriptor> take_turn(const std::string& stem) {
+  const std::string parent = std::filesystem::path{stem}.parent_path().string();
+  const std::string folder = parent.empty() ? "." : parent;
+  host::Descriptor lock{::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)};
+  constexpr int most_looks = 200;
+  for (int looks = 0; lock && ::flock(lock.get(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK; ++looks) {
+    if (looks == most_looks)
+      return transport::Failure{
+          fmt::format("another program begins a recording in {}, and has not come to its first file", folder),
+          "is it stopped? Let it go on, or end it"};
+    sleep_for(std::chrono::milliseconds{10});
+  }
+  return lock;
+}
+
 }  // namespace
 
 Files::Files(FilesOptions options, const protocol::Catalogue& catalogue)
@@ -35,6 +57,9 @@ Files::Files(FilesOptions options, const protocol::Catalogue& catalogue)
       name_(split_name(options_.path, options_.format->ending)) {}
 
 transport::Outcome<void> Files::open() {
+  transport::Outcome<host::Descriptor> turn;
+  if (options_.ring != 0) turn = take_turn(name_.stem);
+  if (!turn) return std::move(turn.error);
   if (auto joined = join_ring(); !joined) return joined;
   auto opened = open_next();
   if (!opened) return opened;

@@ -1,5 +1,7 @@
 """amiroctl record on a virtual bus: what is sent is in the file, whatever ends the recording."""
 
+import contextlib
+import fcntl
 import os
 import re
 import resource
@@ -17,6 +19,14 @@ sys.path.insert(0, os.path.join(SOURCE, "tests", "peers", "logs"))
 from virtual_bus import FRAME, GOODBYE, HELLO, MAGIC, VERSION, Client  # noqa: E402
 
 LINE = re.compile(r"^\((\d+\.\d+)\) (\S+) (\S+)#(\S*)(?: ([RT]))?$")
+
+
+def open_files(pid):
+    names = set()
+    for entry in os.scandir(f"/proc/{pid}/fd"):
+        with contextlib.suppress(FileNotFoundError):  # closed meanwhile
+            names.add(os.readlink(entry.path))
+    return names
 
 
 class Recording(Case):
@@ -349,6 +359,33 @@ class Recording(Case):
         self.assertRegex(err, "another program records to .*bb_001.log now\n +end it, or give another name")
         self.assertEqual(self.ring("bb_"), ["bb_001.log"])
         self.interrupt(recorder)
+
+    def test_of_two_rings_that_begin_at_once_one_records(self):
+        self.start_sim()
+        ring = ("record", "-o", "bb.log", "--split", "1h", "--ring", "2")
+        turn = os.open(self.folder, os.O_RDONLY | os.O_DIRECTORY)
+        fcntl.flock(turn, fcntl.LOCK_EX)
+        both = [self.start(*ring, cwd=self.folder) for _ in range(2)]
+        folder = os.path.realpath(self.folder)
+        waiting.until(lambda: all(folder in open_files(each.pid) for each in both), "both wait for their turn")
+        os.close(turn)
+        waiting.until(lambda: any(each.poll() is not None for each in both), "one has ended")
+        ended, recorder = sorted(both, key=lambda each: each.poll() is None)
+        self.assertRegex(ended.communicate()[1], "another program records to bb_001.log now")
+        self.assertEqual(ended.returncode, 1)
+        self.send_numbered(3)
+        self.wait_for_frames("bb_001.log", 3)
+        self.interrupt(recorder)
+        self.assertEqual(self.ring("bb_"), ["bb_001.log"])
+
+    def test_a_ring_does_not_wait_for_ever_for_another_that_begins(self):
+        self.start_sim()
+        turn = os.open(self.folder, os.O_RDONLY | os.O_DIRECTORY)
+        fcntl.flock(turn, fcntl.LOCK_EX)
+        _, err = self.run_tool("record", "-o", self.path("bb.log"), "--split", "1h", "--ring", "2", code=1)
+        self.assertRegex(err, f"another program begins a recording in {self.folder}, .*\n +is it stopped")
+        os.close(turn)
+        self.assertEqual(self.ring("bb_"), [])
 
     def test_a_file_that_is_moved_is_recorded_to_the_end(self):
         self.start_sim()
