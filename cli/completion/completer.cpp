@@ -246,7 +246,8 @@ Completion complete(Verb program, Session& session, const std::vector<std::strin
       completer.options_of(line.verb);
     }
   } else {
-    if (line.positionals.empty()) completer.verbs_of(line.verb);
+    const bool helps = line.verb == program && line.positionals == std::vector<std::string>{"help"};
+    if (line.positionals.empty() || helps) completer.verbs_of(line.verb);
     completer.positional(line);
   }
   return completer.take();

@@ -70,6 +70,16 @@ class HelpText : public CLI::Formatter {
     return text;
   }
 
+  /// The examples, and where the options are that every verb takes.
+  std::string make_footer(const CLI::App* app) const override {
+    const std::string footer = CLI::Formatter::make_footer(app);
+    const CLI::App* root = app;
+    while (root->get_parent() != nullptr) root = root->get_parent();
+    if (root == app || footer.empty()) return footer;
+    return fmt::format("\nEvery verb takes the bus, the spec and more: `{} help` lists these options.\n{}",
+                       root->get_name(), footer);
+  }
+
   /// Options of add_choice: as the other groups, below a heading that says that they exclude each other.
   std::string make_expanded(const CLI::App* choice) const override {
     if (!choice->get_name().empty() || choice->get_group().empty())

@@ -25,6 +25,8 @@ class Words(harness.Case):
         self.assertEqual(self.candidates("pub"), ["publish"])
         self.assertLessEqual({"list", "publish", "listen", "generate", "completion"}, set(self.candidates("")))
         self.assertLessEqual({"bus", "tasks", "chain"}, set(self.candidates("analyse", "")))
+        self.assertEqual(self.candidates("help", "tr"), ["travel"])
+        self.assertEqual(self.candidates("help", "travel", "tr"), [])
         # Every verb that --help lists.
         help_text, _ = self.run_tool("--help")
         listed = {line.split()[0].rstrip(",") for line in help_text.split("[Options]")[-1].splitlines()
