@@ -7,8 +7,10 @@ for a case."""
 
 import collections
 import os
+import select
 import threading
 import time
+import tty
 import unittest
 
 import waiting
@@ -31,6 +33,32 @@ def own_time():
     return sum(os.times()[:4])
 
 
+class Terminal:
+    """How late the kernel moves the bytes of a pseudo terminal, which a worker of its own does: who waits for them sleeps, and
+    does not look starved."""
+
+    def __init__(self):
+        self.master, self.slave = os.openpty()
+        tty.setraw(self.slave)
+        self.sent = None
+
+    def close(self):
+        os.close(self.master)
+        os.close(self.slave)
+
+    def late(self):
+        """The byte that is under way, in s; then the next one goes."""
+        now = time.monotonic()
+        late = 0.0 if self.sent is None else now - self.sent
+        arrived = self.sent is not None and select.select([self.slave], [], [], 0)[0]
+        if arrived:
+            os.read(self.slave, 1)
+        if arrived or self.sent is None:
+            os.write(self.master, b".")
+            self.sent = now
+        return late
+
+
 class Spare:
     """Whether the machine had time to spare between `with` and its end, at which all that the test started has ended.
     `programs()`: of waiting.Program, those whose lateness counts as well; they may have ended."""
@@ -40,6 +68,7 @@ class Spare:
 
     def __enter__(self):
         self.late = 0.0
+        self.terminal_late = 0.0
         self.blocked = collections.Counter()
         self.done = threading.Event()
         self.begin = (*processor_times(), own_time())
@@ -60,6 +89,7 @@ class Spare:
 
     def watch(self):
         looks = collections.deque(maxlen=LOOKS)
+        terminal = Terminal()
         over = False
         while not over:
             begin = time.monotonic()
@@ -70,6 +100,8 @@ class Spare:
                 looks.append((begin, self.waits(begin - looks[-1][0] if looks else 0.0)))
                 before = looks[0][1]
                 self.late = max(self.late, *(now - before.get(task, 0.0) for task, now in looks[-1][1].items()), 0.0)
+            self.terminal_late = max(self.terminal_late, terminal.late())
+        terminal.close()
 
     def waits(self, since):
         """Of each thread of the programs, in s so far; who is held by the kernel now was since the last look."""
@@ -105,7 +137,7 @@ class RealTime(unittest.TestCase):
             if trial.wasSuccessful() or self.had_time(spare):
                 break
             print(f"{self.id()} failed while this machine was busy (others took {spare.taken:.0%} of it, a thread "
-                  f"or program was {spare.late * 1000:.0f} ms late), try {attempt + 1} of {self.tries}:", flush=True)
+                  f"or program was {spare.late * 1000:.0f} ms late, a terminal {spare.terminal_late * 1000:.0f} ms), try {attempt + 1} of {self.tries}:", flush=True)
             for _, text in trial.failures + trial.errors:
                 print(text, flush=True)
         result.startTest(self)

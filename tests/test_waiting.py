@@ -1,8 +1,11 @@
 """What Python tests wait with: what a program prints is whole, however often it is looked at meanwhile."""
 
+import os
+import select
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 
 import realtime
@@ -45,6 +48,22 @@ class HeldUp(unittest.TestCase):
         with realtime.Spare(lambda: [Played()]) as spare:  # each of which is looked at once
             waiting.until(lambda: spare.begin[1] + 1 < realtime.processor_times()[1], "the machine has run")
         self.assertLess(spare.late, 0.3)
+
+    def test_a_byte_that_stays_away_is_late(self):
+        terminal = realtime.Terminal()
+        self.addCleanup(terminal.close)
+        self.assertEqual(terminal.late(), 0.0)
+        for _ in range(3):  # it arrives, and the next one goes
+            waiting.until(lambda: select.select([terminal.slave], [], [], 0)[0], "it has arrived")
+            begin = terminal.sent
+            self.assertGreater(terminal.late(), 0.0)
+            self.assertGreater(terminal.sent, begin)
+        waiting.until(lambda: select.select([terminal.slave], [], [], 0)[0], "it has arrived")
+        os.read(terminal.slave, 1)  # as if it had not
+        sent = terminal.sent
+        waiting.until(lambda: time.monotonic() - sent > 0.1, "a while is over")
+        self.assertGreater(terminal.late(), 0.1)
+        self.assertEqual(terminal.sent, sent)
 
     def test_states_of_threads(self):
         with subprocess.Popen(["sleep", "60"]) as program:

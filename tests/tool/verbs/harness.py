@@ -31,7 +31,7 @@ class Case(RealTime):
     machine did not run meanwhile: programs that command a robot then end, as they have to."""
 
     def had_time(self, spare):
-        return spare.late < STOOD_STILL_S
+        return max(spare.late, spare.terminal_late) < STOOD_STILL_S
 
     def programs(self):
         return tuple(getattr(self, "_started", ()))

@@ -297,10 +297,12 @@ class TheOwnerEnds(Joined):
 class AnOwnerThatOnlyKeepsTheLine(Joined):
     def keep(self, *arguments):
         keeper = self.start("central", "--own", "--scan", "200ms", *arguments)
+        said = ""
         for line in keeper.stderr:
+            said += line
             if "Ctrl-C ends it" in line:
                 return keeper
-        return self.fail(f"it ended with {keeper.wait()}")
+        return self.fail(f"it ended with {keeper.wait()}: {said}")
 
     def test_keeps_links_for_many_commands(self):
         keeper = self.keep()
