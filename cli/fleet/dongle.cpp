@@ -76,11 +76,12 @@ class Probe {
     // The dot ends what the base firmware holds of the words above.
     if (!says_ok(heard_)) ask(".", 100ms, [](std::string_view) { return false; });
     const std::size_t before = heard_.size();
-    ask("AT?.", 600ms, [before](std::string_view text) { return says_ok(text.substr(before)); });
-    if (says_ok(heard_)) return Dialect::at;
-    if (says_found(heard_)) return Dialect::words;
+    ask("AT?.", 600ms,
+        [before](std::string_view text) { return says_found(text) || says_ok(text.substr(before)); });
+    if (const auto known = from_an_answer()) return known;
     // It may have heard a beginning of a command: a line end, and its list.
     ask("\nlist\n", 600ms, is_readable);
+    if (const auto late = from_an_answer()) return late;
     if (is_readable(heard_)) return Dialect::thesis;
     return std::nullopt;
   }
@@ -92,6 +93,13 @@ class Probe {
   [[nodiscard]] std::string& heard() { return heard_; }
 
  private:
+  /// By what only one kind says, however late it is.
+  [[nodiscard]] std::optional<Dialect> from_an_answer() const {
+    if (says_ok(heard_)) return Dialect::at;
+    if (says_found(heard_)) return Dialect::words;
+    return std::nullopt;
+  }
+
   template <class Done>
   void ask(std::string_view words, base::Duration time, Done done) {
     const base::Time end = now() + time;

@@ -164,6 +164,7 @@ class Central:
         self.scanning = False
         self.line = self.typed = ""
         self.mute = False        # answers no command
+        self.slow = 0.0          # s that it is late with its first answer
         self.commands = []
         self.master, self.slave = os.openpty()
         tty.setraw(self.slave)
@@ -225,6 +226,8 @@ class Central:
         while not self.over:
             ready, _, _ = select.select([self.master], [], [], 0.01)
             if ready:
+                time.sleep(self.slow)  # how late it answers
+                self.slow = 0.0
                 for char in os.read(self.master, 4096).decode("latin-1"):
                     self.feed(char)
             now = time.monotonic()

@@ -115,6 +115,12 @@ class Dongles(Case):
         self.check_verbs()
         self.check_verbs("--dongle", "ours")
 
+    def test_ours_answers_late(self):
+        self.play(Central)
+        self.dongle.slow = 1.5  # when it was asked last, for what the thesis's own would answer
+        self.assertIn("AVR", self.tool("robots", "--listen", "500ms")[0])
+        self.assertGreater(self.dongle.commands.count("stop"), 2, self.dongle.commands)  # settled as ours is
+
     def test_one_that_answers_nothing(self):
         self.play(Silent)
         begin = time.monotonic()
