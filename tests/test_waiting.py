@@ -7,6 +7,7 @@ import sys
 import tempfile
 import time
 import unittest
+import unittest.mock
 
 import realtime
 import waiting
@@ -64,6 +65,13 @@ class HeldUp(unittest.TestCase):
         waiting.until(lambda: time.monotonic() - sent > 0.1, "a while is over")
         self.assertGreater(terminal.late(), 0.1)
         self.assertEqual(terminal.sent, sent)
+
+    def test_calm_is_waited_for_and_not_for_ever(self):
+        for late, least in ((1e9, 2.0), (-1.0, 0.2)):  # how late a thread may wake: always in time; never
+            with unittest.mock.patch.object(realtime, "MOST_LATE", late):
+                begin = time.monotonic()
+                realtime.until_calm(limit=20 if late > 0 else 0.2)
+                self.assertGreaterEqual(time.monotonic() - begin, least)
 
     def test_states_of_threads(self):
         with subprocess.Popen(["sleep", "60"]) as program:

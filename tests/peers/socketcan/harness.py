@@ -41,8 +41,9 @@ def equal(got, wanted, what):
     expect(got == wanted, f'{what}: got {got!r} instead of {wanted!r}')
 
 
-def attempt(function, context, tries=3):
-    """What is wrong, None: nothing. As realtime.py does: again where this machine held up a thread for long."""
+def attempt(function, context, tries=5):
+    """What is wrong, None: nothing. As realtime.py does: again where this machine held up a thread for long. Compilers may be
+    beside all of it for minutes."""
     for left in reversed(range(tries)):
         try:
             with realtime.Spare() as spare:
@@ -54,6 +55,7 @@ def attempt(function, context, tries=3):
         if spare.late < realtime.MOST_LATE or not left:
             return text
         print(f'{text}\n#   again: meanwhile a thread woke {spare.late * 1000:.0f} ms late', flush=True)
+        realtime.until_calm()
 
 
 def run_all(selected, context):
