@@ -781,10 +781,12 @@ print(lost, flush=True)
 
     @staticmethod
     def cpu(process):
-        """Seconds of CPU time."""
-        with open(f"/proc/{process.pid}/stat", encoding="ascii") as file:
-            fields = file.read().rsplit(")", 1)[1].split()
-        return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+        """Seconds of CPU time; ticks of 10 ms are a fifth of what is measured."""
+        spent = 0
+        for task in os.scandir(f"/proc/{process.pid}/task"):
+            with open(f"{task.path}/schedstat", encoding="ascii") as file:
+                spent += int(file.read().split()[0])
+        return spent / 1e9
 
     def test_what_has_come_goes_out_before_the_end(self):
         self.start_sim("--frozen")
@@ -807,11 +809,13 @@ print(lost, flush=True)
         viewer.subscribe(*viewer.channels)
         viewer.message("/gyroscope")
         shares = []
-        for _ in range(4):  # the least: on a busy machine the same work takes longer
+        for _ in range(4 if harness.sanitized() else 16):  # the least: on a busy machine the same work takes longer
             before, begin = self.cpu(server), time.monotonic()
             for _ in range(300):
                 viewer.message("/gyroscope")
             shares.append((self.cpu(server) - before) / (time.monotonic() - begin))
+            if shares[-1] < 0.02:
+                break
         print(f"serve at 100 frames/s: {min(shares) * 100:.1f} % of a core", file=sys.stderr)
         if not harness.sanitized():
             self.assertLess(min(shares), 0.02)
