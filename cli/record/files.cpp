@@ -16,6 +16,7 @@
 
 #include "cli/logs/opened_log.hpp"
 #include "cli/shared/clock.hpp"
+#include "cli/shared/interrupt.hpp"
 #include "cli/shared/messages.hpp"
 
 namespace ocm::cli::record {
@@ -45,6 +46,7 @@ transport::Outcome<host::Descriptor> take_turn(const std::string& stem) {
           fmt::format("another program begins a recording in {}, and has not come to its first file", folder),
           "is it stopped? Let it go on, or end it"};
     sleep_for(std::chrono::milliseconds{10});
+    if (interrupted() != 0) throw Exit{exit_code_after_interrupt(exit_failure)};
   }
   return lock;
 }

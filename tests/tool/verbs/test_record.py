@@ -384,6 +384,10 @@ class Recording(Case):
         fcntl.flock(turn, fcntl.LOCK_EX)
         _, err = self.run_tool("record", "-o", self.path("bb.log"), "--split", "1h", "--ring", "2", code=1)
         self.assertRegex(err, f"another program begins a recording in {self.folder}, .*\n +is it stopped")
+        waits = self.start("record", "-o", "bb.log", "--split", "1h", "--ring", "2", cwd=self.folder)
+        waiting.until(lambda: os.path.realpath(self.folder) in open_files(waits.pid), "it waits")
+        self.interrupt(waits)
+        self.assertEqual(waits.returncode, 130)
         os.close(turn)
         self.assertEqual(self.ring("bb_"), [])
 
