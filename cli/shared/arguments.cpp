@@ -76,7 +76,7 @@ class HelpText : public CLI::Formatter {
     const CLI::App* root = app;
     while (root->get_parent() != nullptr) root = root->get_parent();
     if (root == app || footer.empty()) return footer;
-    return fmt::format("\nEvery verb takes the bus, the spec and more: `{} help` lists these options.\n{}",
+    return fmt::format("Every verb takes the bus, the spec and more: `{} help` lists these options.\n\n{}",
                        root->get_name(), footer);
   }
 
