@@ -25,6 +25,24 @@ class Printed(unittest.TestCase):
         self.assertGreater(looks, 3)
 
 
+class Lines(unittest.TestCase):
+    def test_what_was_read_ahead_is_not_lost(self):
+        with waiting.Program(["seq", "2000"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as program:
+            program.has_ended(0)  # so that the first line is read with those behind it
+            first = program.stdout.readline()
+            self.assertEqual((first + program.communicate()[0], program.returncode), ("".join(f"{i}\n" for i in range(1, 2001)), 0))
+
+    def test_a_program_that_reads_nothing(self):
+        with waiting.Program(["true"], stdin=subprocess.PIPE, stdout=subprocess.PIPE) as program:
+            self.assertEqual((program.communicate(b"x" * (1 << 20)), program.returncode), ((b"", None), 0))
+
+    def test_one_that_does_not_end_in_time(self):
+        with waiting.Program(["sleep", "60"], stdout=subprocess.PIPE) as program:
+            self.assertRaises(subprocess.TimeoutExpired, program.communicate, timeout=0.1)
+            program.kill()
+            self.assertEqual((program.communicate(), program.returncode), ((b"", None), -9))
+
+
 class Played:
     """A program whose only thread is held by the kernel, from its third look on."""
     pid = 1

@@ -1,7 +1,9 @@
 """Waits for events, never for a time: what a test may wait for in place of a sleep."""
 
+import contextlib
 import os
 import subprocess
+import threading
 import time
 
 
@@ -52,11 +54,28 @@ def starved_threads(pid):
     return seconds
 
 
+class Talk(threading.Thread):
+    """Reads all of a stream, or writes a text to it, and closes it."""
+
+    def __init__(self, stream, text):
+        super().__init__(daemon=True)
+        self.stream, self.text = stream, text
+        self.start()
+
+    def run(self):
+        with contextlib.suppress(BrokenPipeError), self.stream:
+            if self.stream.readable():
+                self.text = self.stream.read()
+            elif self.text:
+                self.stream.write(self.text)
+
+
 class Program(subprocess.Popen):
     """A program of which it is known after its end, too, how long its threads had no processor: the kernel counts a wait once
     it is over, and who was held up for too long may end within the next millisecond."""
 
     at_end = {}
+    talks = {}
 
     def starved_threads(self):
         """As above; after its end what was known then, of the threads that it had left."""
@@ -64,6 +83,18 @@ class Program(subprocess.Popen):
 
     def blocked_threads(self):
         return set() if self.returncode is not None else blocked_threads(self.pid)
+
+    def communicate(self, input=None, timeout=None):
+        """As that of the base class, which leaves out what a stream has read ahead while lines were read from it."""
+        if not self.talks:
+            self.talks = {stream: Talk(stream, input) for stream in (self.stdin, self.stdout, self.stderr) if stream and not stream.closed}
+        end = None if timeout is None else time.monotonic() + timeout
+        for talk in self.talks.values():
+            talk.join(end and max(0, end - time.monotonic()))
+            if talk.is_alive():  # it goes on, for who asks again
+                raise subprocess.TimeoutExpired(self.args, timeout)
+        self.wait(end and max(0, end - time.monotonic()))
+        return tuple(talk and talk.text for talk in (self.talks.get(self.stdout), self.talks.get(self.stderr)))
 
     def has_ended(self, patience=os.WNOHANG):
         """It is still there, to be looked at, until `poll` or `wait` has taken its exit code."""
