@@ -130,7 +130,7 @@ class OnTheBus(unittest.TestCase):
         self.wait_for(self.sim, "Ctrl-C ends it")
 
     def start(self, *arguments, **options):
-        process = subprocess.Popen([AMIROCTL, *arguments], env=self.environment, text=True, stdin=subprocess.DEVNULL,
+        process = waiting.Program([AMIROCTL, *arguments], env=self.environment, text=True, stdin=subprocess.DEVNULL,
                                    stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, **options)
         self.addCleanup(self.end, process)
         return process
@@ -173,16 +173,17 @@ class Killed(OnTheBus):
         result = []
         for moment, recorder, path, since, before in kills:
             time.sleep(max(0, moment - time.monotonic()))  # at any instant
-            starved = self.starved(recorder) - before
+            now = time.monotonic()  # of the kill at the latest: this program may have no processor either
             recorder.send_signal(signal.SIGKILL)
             recorder.wait()
-            old = time.monotonic() - LEAST_S - SLACK_S - starved  # on a busy machine it could not
+            starved = self.starved(recorder) - before  # the wait in which it was killed is counted once it is over
+            old = now - LEAST_S - SLACK_S - starved
             result.append((path, since, traffic.before(old)))
         return result
 
     def starved(self, recorder):
         """For how long a frame could not come to the recorder's file for want of a processor, in seconds."""
-        return waiting.starved(recorder.pid) + waiting.starved(self.sim.pid)
+        return sum(recorder.starved_threads().values()) + sum(self.sim.starved_threads().values())
 
     def test_killed_at_any_instant(self):
         traffic = Traffic(self.folder)
