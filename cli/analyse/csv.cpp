@@ -215,9 +215,7 @@ void stop_at(const std::vector<Mistake>& mistakes, std::string_view file) {
   for (std::size_t i = 0; i < std::min(mistakes.size(), most_shown); ++i)
     remark(fmt::format("{}: {}\n    {}", mistakes[i].place, mistakes[i].what, mistakes[i].remedy));
   if (mistakes.size() > most_shown) remark(fmt::format("and {} more", mistakes.size() - most_shown));
-  fail({fmt::format("{}: {} error{}, nothing was analysed", file, mistakes.size(),
-                    mistakes.size() == 1 ? "" : "s"),
-        ""},
+  fail({fmt::format("{}: {}, nothing was analysed", file, counted(mistakes.size(), "error")), ""},
        exit_usage);
 }
 

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "ocm/base/utf8.hpp"
+#include "ocm/client/counted.hpp"
 
 #include "cli/output/csv_cell.hpp"
 #include "cli/shared/json.hpp"
@@ -88,8 +89,8 @@ std::string to_csv(const Study& study) {
 
 std::string left_out_text(const std::vector<LeftOut>& left_out) {
   if (left_out.empty()) return {};
-  std::string text = fmt::format("Not counted: {} message{}, with what they send on top of these bounds.\n",
-                                 left_out.size(), left_out.size() == 1 ? "" : "s");
+  std::string text = fmt::format("Not counted: {}, with what they send on top of these bounds.\n",
+                                 client::counted(left_out.size(), "message"));
   for (const auto reason : {LeftOut::Reason::no_period, LeftOut::Reason::no_distance, LeftOut::Reason::events,
                             LeftOut::Reason::transport_protocol, LeftOut::Reason::too_long}) {
     std::string names;
@@ -181,8 +182,8 @@ std::string to_table(const Study& study, const Advice& advice, bool colour) {
   if (std::any_of(study.rows.begin(), study.rows.end(), [](const Row& row) { return row.sporadic; }))
     text += "T with a +: the shortest distance of two that are sent on events; they may come less often.\n";
   for (const auto& queue : study.queues)
-    text += queue.frames > 0 ? fmt::format("{} has {} frame{} waiting or on the bus at most.\n", queue.node,
-                                           queue.frames, queue.frames == 1 ? "" : "s")
+    text += queue.frames > 0 ? fmt::format("{} has {} waiting or on the bus at most.\n", queue.node,
+                                           client::counted(queue.frames, "frame"))
                              : fmt::format("There is no bound on how many frames of {} wait.\n", queue.node);
   if (!study.tests.empty())
     text += "Tests of the utilisation alone (sufficient, not necessary; R above is exact):\n";

@@ -69,9 +69,9 @@ class Comparison {
     remarks.insert(remarks.end(), log_->remarks.begin(), log_->remarks.end());
     if (requests_ > 0)
       remarks.push_back(
-          fmt::format("{} request{} from the operator, not in the set: each can delay a frame by its own "
+          fmt::format("{} from the operator, not in the set: each can delay a frame by its own "
                       "length.",
-                      requests_, requests_ == 1 ? "" : "s"));
+                      counted(requests_, "request")));
     if (packets_ > 0)
       remarks.push_back(
           fmt::format("{} of J1939's transport protocol, not in the set: each can delay a frame by its own "

@@ -190,9 +190,9 @@ void Judgement::print_table() {
   if (better)
     print_fitted(
         fmt::format("the shortest period that passes beside what was heard is {}\n", to_text(*better)), 4);
-  print_fitted(fmt::format("load {}.{} % of {} bit/s at worst; {} identifier{} heard within {}\n",
-                           load / 10'000, load / 1'000 % 10, catalogue_.bit_rate, traffic_.identifiers(),
-                           traffic_.identifiers() == 1 ? "" : "s", us(traffic_.window().count())),
+  print_fitted(fmt::format("load {}.{} % of {} bit/s at worst; {} heard within {}\n", load / 10'000,
+                           load / 1'000 % 10, catalogue_.bit_rate,
+                           counted(traffic_.identifiers(), "identifier"), us(traffic_.window().count())),
                4);
 }
 

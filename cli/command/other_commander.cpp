@@ -41,8 +41,8 @@ void OtherCommander::refuse_if_heard() {
     fail({fmt::format("{}: {} drives the wheels by itself, as another program has asked it to: {}", verb_,
                       catalogue_->board_name(behaviour_.topic()), *active_),
           "wait for its end, or `amiroctl behave none`; --force begins all the same, and ends it"});
-  fail({fmt::format("{}: another program commands {}: {}, {} set point{} within {}", verb_, motors_->name,
-                    can::to_text(last_).view(), recent_.size(), recent_.size() == 1 ? "" : "s",
+  fail({fmt::format("{}: another program commands {}: {}, {} within {}", verb_, motors_->name,
+                    can::to_text(last_).view(), counted(recent_.size(), "set point"),
                     words::to_text(client::listen_before_hold)),
         "end that program first; --force drives all the same, and the robot follows the set point that came "
         "last"});
@@ -57,8 +57,7 @@ void OtherCommander::tell_unanswered() const {
 
 void OtherCommander::sum_up() const {
   if (meanwhile_ != 0)
-    remark(fmt::format("{}: {} set point{} of another program came meanwhile", verb_, meanwhile_,
-                       meanwhile_ == 1 ? "" : "s"));
+    remark(fmt::format("{}: {} of another program came meanwhile", verb_, counted(meanwhile_, "set point")));
 }
 
 }  // namespace ocm::cli

@@ -201,11 +201,11 @@ bool Timeline::finish() {
 
 void Timeline::tell_unsent() {
   const auto frames = [](std::uint64_t count) {
-    return fmt::format("{} {} not sent", client::count(count, "frame*"), count == 1 ? "was" : "were");
+    return fmt::format("{} {} not sent", counted(count, "frame"), count == 1 ? "was" : "were");
   };
   if (withheld_ != 0)
     remark(fmt::format("{}: {} {} not sent, because the one before had not left", verb_,
-                       client::count(withheld_, "set point*"), withheld_ == 1 ? "was" : "were"));
+                       counted(withheld_, "set point"), withheld_ == 1 ? "was" : "were"));
   if (left_out_ != 0)
     remark(fmt::format("{}: {}, because this program ran too late for {} time", verb_, frames(left_out_),
                        left_out_ == 1 ? "its" : "their"));
@@ -213,7 +213,7 @@ void Timeline::tell_unsent() {
     remark(fmt::format("{}: {}, because {} had not taken those before", verb_, frames(not_taken_),
                        bus_->name()));
   const auto broadcasts = broadcasts_.counts();
-  const auto messages = [](std::uint64_t count) { return client::count(count, "broadcast*"); };
+  const auto messages = [](std::uint64_t count) { return counted(count, "broadcast"); };
   if (const auto late = broadcasts.late - told_.late; late != 0)
     remark(fmt::format("{}: {} left out or begun again, because this program or {} was too late", verb_,
                        messages(late), bus_->name()));

@@ -4,8 +4,6 @@
 
 #include <fmt/format.h>
 
-#include "ocm/client/diagnosis.hpp"
-
 #include "cli/fleet/line_time.hpp"
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/messages.hpp"
@@ -55,7 +53,7 @@ int keep_line(const LineOptions& options, bool call_back) {
     return false;
   });
   const Owner& owner = line.own()->owner();
-  std::string text = fmt::format("{} joined", client::count(owner.joined(), "program*"));
+  std::string text = fmt::format("{} joined", counted(owner.joined(), "program"));
   add_count(text, owner.turned_away(), "turned away");
   say(text);
   return exit_code_after_interrupt(exit_success);

@@ -6,8 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "ocm/client/diagnosis.hpp"
-
 #include "cli/shared/fitted.hpp"
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/json.hpp"
@@ -206,8 +204,8 @@ void MapRun::report(const std::optional<Agreement>& result) const {
       fmt::format("{} in {}: {:.2f} m2 free, {:.0f} % of their border known; {} drawn, {} not, because a "
                   "robot turned; "
                   "{}\n",
-                  words(end_), span(took_), free, 100 * left.known(), client::count(drawn.drawn, "update*"),
-                  drawn.turning, client::count(explorer.goals, "goal*")),
+                  words(end_), span(took_), free, 100 * left.known(), counted(drawn.drawn, "update"),
+                  drawn.turning, counted(explorer.goals, "goal")),
       4);
   if (result)
     print_fitted(
@@ -231,7 +229,7 @@ End MapRun::drive(std::optional<base::Duration> limit) {
       told = now;
       remark(fmt::format("map: {}: {:.2f} m2 free, {}", span(now - begin),
                          area_m2(mapping_->map(), cognitive::CellState::free),
-                         client::count(mapping_->counters().drawn, "update*")));
+                         counted(mapping_->counters().drawn, "update")));
     }
     if (!lost_.empty() || std::any_of(robots_.begin(), robots_.end(), [&](unsigned i) { return lost(i); }))
       tell_lost();

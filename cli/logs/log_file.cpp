@@ -304,8 +304,8 @@ void tell_losses(const log::Losses& losses, const LogFormat& format) {
   for (std::size_t i = 0; i < log::losses; ++i) {
     const auto lost = static_cast<log::Lost>(i);
     if (losses.count(lost) == 0) continue;
-    text += fmt::format("{}{} {} frame{}", text.empty() ? "" : ", ", log::describe(lost), losses.count(lost),
-                        losses.count(lost) == 1 ? "" : "s");
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", log::describe(lost),
+                        counted(losses.count(lost), "frame"));
   }
   remark(fmt::format("{} has no room for {}", format.name, text));
   const LogFormat* const finer = find_format(fmt::format("{}-ns", format.name));

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "ocm/client/counted.hpp"
+
 #include "cli/operate/study.hpp"
 #include "cli/shared/json.hpp"
 #include "cli/words/quantity.hpp"
@@ -104,13 +106,10 @@ std::string recoveries_of(const Study& study) {
 
 std::string to_table(const Study& study) {
   const auto& tables = study.file->tables;
-  const auto count = [](std::size_t n, std::string_view what) {
-    return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s");
-  };
   std::string text = fmt::format("operator {}: {}, {}, {}, at {} bit/s\n", tables.name,
-                                 count(tables.configurations.size(), "configuration"),
-                                 count(tables.monitors.size(), "monitor"),
-                                 count(tables.transitions.size(), "transition"), study.bit_rate);
+                                 client::counted(tables.configurations.size(), "configuration"),
+                                 client::counted(tables.monitors.size(), "monitor"),
+                                 client::counted(tables.transitions.size(), "transition"), study.bit_rate);
   std::size_t width = std::string_view{"the start"}.size();
   for (const auto& configuration : tables.configurations) width = std::max(width, configuration.name.size());
 
@@ -176,7 +175,7 @@ std::string to_table(const Study& study) {
   for (const auto& caution : study.cautions)
     text += fmt::format("\nCAUTION: {}: {}\n  {}\n", caution.place, caution.what, caution.remedy);
   text += study.passes() ? "\nin time\n"
-                         : fmt::format("\nNOT IN TIME: {}\n", count(study.doubts.size(), "reason"));
+                         : fmt::format("\nNOT IN TIME: {}\n", client::counted(study.doubts.size(), "reason"));
   return text;
 }
 

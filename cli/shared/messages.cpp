@@ -257,10 +257,6 @@ Written write_now(int descriptor, std::string_view text) {
   return written;
 }
 
-std::string counted(std::uint64_t count, std::string_view noun) {
-  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
-}
-
 void add_count(std::string& text, std::uint64_t count, std::string_view what) {
   if (count != 0) text += fmt::format(", {} {}", count, what);
 }

@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "ocm/client/counted.hpp"
 #include "ocm/transport/bus.hpp"
 
 namespace ocm::cli {
@@ -44,8 +45,7 @@ class HeldMessages {
   [[nodiscard]] static std::size_t count();
   [[nodiscard]] static std::string_view newest();
 };
-/// "1 frame", "2 frames".
-[[nodiscard]] std::string counted(std::uint64_t count, std::string_view noun);
+using client::counted;
 /// Adds ", COUNT what" to a summary, where there is something to count.
 void add_count(std::string& text, std::uint64_t count, std::string_view what);
 /// The same with a noun that has a plural: ", 1 error frame left out".

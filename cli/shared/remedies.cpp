@@ -81,16 +81,16 @@ std::vector<client::Finding> findings_of(const transport::BusCounters& bus,
   std::vector<client::Finding> all;
   const auto add = [&all](std::uint64_t number, std::string_view what, std::string_view remedy) {
     if (number != 0)
-      all.push_back({client::Severity::warning, "", client::count(number, what), std::string{remedy}});
+      all.push_back({client::Severity::warning, "", client::counted(number, what), std::string{remedy}});
   };
   add(bus.error_frames, "error frame* from the CAN controller of this machine",
       "check cable, termination and bit rate; `amiroctl listen` shows what they say");
   add(bus.lost, "frame* lost on the way to this program", "this machine is too busy");
   add(seen.unknown, "frame* that the spec does not know",
       "another program or robot on the bus, or another spec: `amiroctl listen` shows them");
-  add(seen.remote, "remote frame*", "the protocol has none: another program or robot on the bus");
+  add(seen.remote, "remote frame", "the protocol has none: another program or robot on the bus");
   add(seen.wrong_dlc, "frame* of a wrong length", "a board or a program with another spec");
-  add(seen.incomplete, "incomplete sample*", "frames are lost on the bus");
+  add(seen.incomplete, "incomplete sample", "frames are lost on the bus");
   return all;
 }
 

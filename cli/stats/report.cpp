@@ -9,7 +9,7 @@
 
 #include "ocm/base/text.hpp"
 #include "ocm/can/text.hpp"
-#include "ocm/client/diagnosis.hpp"
+#include "ocm/client/counted.hpp"
 #include "ocm/log/complaints.hpp"
 
 #include "cli/output/csv_cell.hpp"
@@ -161,21 +161,21 @@ std::vector<std::string> summary(const Bus& bus) {
   lines.push_back(
       fmt::format("{}: {} in {} ({}); {}",
                   bus.name.empty() ? "a bus without a name" : log::Complaints::printable(bus.name),
-                  client::count(counters.frames - counters.errors, "frame*"), time(figures.span().count()),
+                  client::counted(counters.frames - counters.errors, "frame"), time(figures.span().count()),
                   to_text(figures.rate_hz, Unit::hertz), load));
   std::string faults;
   const auto fault = [&faults](std::uint64_t count, std::string_view what) {
     if (count == 0) return;
-    faults += fmt::format("{}{}", faults.empty() ? "" : ", ", client::count(count, what));
+    faults += fmt::format("{}{}", faults.empty() ? "" : ", ", client::counted(count, what));
   };
-  fault(counters.errors, "error frame*");
+  fault(counters.errors, "error frame");
   fault(figures.overflows, "overflow* of the CAN controller");
   fault(bus.drops, "frame* lost");
   fault(figures.fd_frames - figures.not_in_load, "CAN FD frame*");
   fault(figures.not_in_load, figures.bit_rates.nominal == 0
                                  ? "CAN FD frame*"
                                  : "CAN FD frame*, not in the load without --data-bitrate");
-  fault(counters.remote, "remote frame*");
+  fault(counters.remote, "remote frame");
   fault(counters.transport, "frame* of the transport protocol of J1939");
   const auto lost = figures.transport.lost();
   fault(lost,

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "ocm/base/utf8.hpp"
+#include "ocm/client/counted.hpp"
 
 #include "cli/top/short_number.hpp"
 
@@ -164,7 +165,7 @@ void View::heads(Picture& picture, const Scene& scene, const Rows& rows, std::si
       counters.put_whole(
           fmt::format("TEC {} REC {}  ", sum.error_counters->transmit, sum.error_counters->receive),
           sum.controller ? style_of(*sum.controller) : Style::dim);
-    counters.put_whole(fmt::format("{} frame{}", sum.frames, sum.frames == 1 ? "" : "s"), Style::dim);
+    counters.put_whole(client::counted(sum.frames, "frame"), Style::dim);
     const auto count = [&](std::uint64_t number, std::string_view what, Style bad) {
       if (number > 0) counters.put_whole(fmt::format("  {} {}", number, what), bad);
     };

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "ocm/client/diagnosis.hpp"
+#include "ocm/client/counted.hpp"
 
 #include "cli/output/field_text.hpp"
 #include "cli/output/named_value.hpp"
@@ -39,7 +39,7 @@ std::string label_of(const protocol::Topic& topic, std::size_t frame, const prot
 std::string what_came(const Row& row) {
   if (row.frames == 0) return "nothing came";
   if (row.frames == row.wrong_length)
-    return fmt::format("no sample, {} of a wrong length", client::count(row.frames, "frame*"));
+    return fmt::format("no sample, {} of a wrong length", client::counted(row.frames, "frame"));
   if (row.incomplete == 0) return "no whole sample yet";
   return fmt::format("no whole sample, {} incomplete", row.incomplete);
 }

@@ -71,7 +71,7 @@ class Messages {
       missing.resize(missing.size() - more);
       all.push_back({Severity::warning,
                      board < catalogue_->boards.size() ? catalogue_->boards[board].name : std::string_view{},
-                     fmt::format("of {} due in {} nothing came of {}{}", client::count(due, "message*"),
+                     fmt::format("of {} due in {} nothing came of {}{}", counted(due, "message"),
                                  words::to_text(listened), fmt::join(missing, ", "),
                                  more == 0 ? "" : fmt::format(" and {} more", more)),
                      "is the sender switched on and on this bus? `amiroctl stats` measures every period"});
@@ -179,8 +179,7 @@ class Examination {
     return {
         Severity::warning, "",
         fmt::format("{} lost frames for want of room, reported {}",
-                    on_a_line ? "the serial adapter" : "the CAN controller",
-                    client::count(overflows_, "time*")),
+                    on_a_line ? "the serial adapter" : "the CAN controller", counted(overflows_, "time")),
         on_a_line
             ? "a serial line of 115200 baud carries some 440 frames/s: publish less, or use an adapter on "
               "the CAN bus"

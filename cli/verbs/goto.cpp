@@ -8,8 +8,6 @@
 
 #include <fmt/format.h>
 
-#include "ocm/client/diagnosis.hpp"
-
 #include "cli/fleet/central_line.hpp"
 #include "cli/fleet/line_time.hpp"
 #include "cli/fleet/link_watch.hpp"
@@ -98,7 +96,7 @@ int report(const std::string& name, const RobotNow& robot, base::Duration stood_
     fail({fmt::format("goto: {} does not say where it is, so it was not sent anywhere", name),
           "switch it off and on: its program may hang"});
   fail({fmt::format("goto: {} has not heard it after {} (said {}; {} % of its sentences come whole); {}",
-                    name, words::to_text(options.timeout), client::count(times_said, "time*"),
+                    name, words::to_text(options.timeout), counted(times_said, "time"),
                     robot.quality_per_mille / 10, end),
         "bring the central nearer, or give it more time: --timeout 120s"});
 }

@@ -96,8 +96,8 @@ void listen(Session& session, const ListenOptions& options, int& exit_code) {
   if (over == Over::time) expect_answer(bus->name());
   // As with candump -n: frames that were expected and did not come are a failure.
   if (over == Over::time && options.count != 0) {
-    remark(fmt::format("amiroctl: listen: expected {}, only {} came in time",
-                       client::count(options.count, "frame*"), display.shown()));
+    remark(fmt::format("amiroctl: listen: expected {}, only {} came in time", counted(options.count, "frame"),
+                       display.shown()));
     exit_code = exit_failure;
   }
   if (options.strict && (display.any_fault() || bus->counters().lost != 0)) exit_code = exit_failure;

@@ -13,7 +13,6 @@
 #include <fmt/format.h>
 
 #include "ocm/base/text.hpp"
-#include "ocm/client/diagnosis.hpp"
 #include "ocm/log/complaints.hpp"
 
 #include "cli/output/printer.hpp"
@@ -197,7 +196,7 @@ void run(Verb verb, Session& session, const PlotOptions& options, int& exit_code
   if (const auto lost = curves.lost_messages(); lost != 0)
     remark(fmt::format(
         "{} of J1939 {} not put together, so the curves may lack values; `amiroctl decode` says why",
-        client::count(lost, "message*"), lost == 1 ? "was" : "were"));
+        counted(lost, "message"), lost == 1 ? "was" : "were"));
   if (curves.points() == 0) {
     if (interrupted() == 0)
       remark(fmt::format("amiroctl: plot: nothing to draw came from {}", watching.source()));
@@ -223,8 +222,8 @@ void run(Verb verb, Session& session, const PlotOptions& options, int& exit_code
   else
     write_file(output, text);
   if (output != "-")
-    remark(fmt::format("{}: {} of {}", output, client::count(curves.points(), "point*"),
-                       client::count(wanted.size(), "curve*")));
+    remark(fmt::format("{}: {} of {}", output, counted(curves.points(), "point"),
+                       counted(wanted.size(), "curve")));
   exit_code = exit_code_after_interrupt(watching.ending(exit_code));
 }
 

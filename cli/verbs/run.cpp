@@ -65,9 +65,7 @@ words::Script checked(const std::string& file, const std::string& text,
   for (const auto& error : std::span{script.errors}.first(told))
     remark(fmt::format("{}:{}:{}: {}\n    {}", file, error.line, error.column, error.what, error.remedy));
   if (told < script.errors.size()) remark(fmt::format("... and {} more", script.errors.size() - told));
-  fail({fmt::format("{}: {} error{}, nothing was sent", file, script.errors.size(),
-                    script.errors.size() == 1 ? "" : "s"),
-        ""},
+  fail({fmt::format("{}: {}, nothing was sent", file, counted(script.errors.size(), "error")), ""},
        exit_usage);
 }
 

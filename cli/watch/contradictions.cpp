@@ -5,8 +5,6 @@
 
 #include <fmt/format.h>
 
-#include "ocm/client/diagnosis.hpp"
-
 #include "cli/shared/messages.hpp"
 
 namespace ocm::cli {
@@ -48,7 +46,7 @@ void tell_contradictions(const Contradictions& found, const protocol::Catalogue&
   if (foreign != 0) why = fmt::format("{} of no {}", foreign, words.of);
   if (first)
     why += fmt::format("{}{} of wrong length, such as {:03X} with {} in place of {}", why.empty() ? "" : ", ",
-                       wrong_length, first->id, client::count(first->length, "byte*"), first->right);
+                       wrong_length, first->id, counted(first->length, "byte"), first->right);
   const auto wrong = foreign + wrong_length;
   const std::string others = wrong == frames ? "another " : "the others may be of another ";
   remark(fmt::format("{}{} of {} {} the spec of {} ({}): {}{}{} --spec FILE names its {}", beginning, wrong,

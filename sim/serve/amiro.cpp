@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "ocm/client/diagnosis.hpp"
+#include "ocm/client/counted.hpp"
 #include "ocm/simulation/virtual_bus_server.hpp"
 
 #include "sim/serve/boards.hpp"
@@ -166,7 +166,7 @@ Ending serve_amiro(const std::string& path, const AmiroOptions& options, const S
   report_bus(server, options.bus_errors > 0, shell);
   turns.each([&shell](const protocol::Topic& topic, std::uint64_t count) {
     shell.report(fmt::format("{:<17} was commanded by two senders, in turns: {}", topic.name,
-                             client::count(count, "time*")));
+                             client::counted(count, "time")));
   });
   return {};
 }

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "ocm/client/diagnosis.hpp"
+#include "ocm/client/counted.hpp"
 #include "ocm/simulation/virtual_bus_server.hpp"
 
 #include "sim/serve/shell.hpp"
@@ -15,15 +15,15 @@ inline void report_bus(const simulation::VirtualBusServer& server, bool disturbe
   const auto& bus = server.arbiter().totals();
   const auto& clients = server.counters();
   shell.report(fmt::format("bus               {}, {}, {} turned away, {} misbehaved, {} lost by slow ones",
-                           client::count(bus.frames, "frame*"), client::count(clients.welcomed, "client*"),
+                           client::counted(bus.frames, "frame"), client::counted(clients.welcomed, "client"),
                            clients.turned_away, clients.misbehaved,
-                           client::count(clients.overruns, "frame*")));
+                           client::counted(clients.overruns, "frame")));
   if (disturbed)
-    shell.report(fmt::format("                  {}, {} repeated", client::count(bus.errors, "error frame*"),
-                             client::count(bus.repetitions, "frame*")));
+    shell.report(fmt::format("                  {}, {} repeated", client::counted(bus.errors, "error frame"),
+                             client::counted(bus.repetitions, "frame")));
   if (bus.clashes != 0)
     shell.report(fmt::format("                  {} two senders at once with the same identifier",
-                             client::count(bus.clashes, "time*")));
+                             client::counted(bus.clashes, "time")));
 }
 
 }  // namespace ocm::sim

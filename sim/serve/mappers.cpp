@@ -12,6 +12,7 @@
 
 #include <fmt/format.h>
 
+#include "ocm/client/counted.hpp"
 #include "ocm/host/system_time.hpp"
 #include "ocm/transport/pty.hpp"
 
@@ -184,8 +185,8 @@ Ending serve_fleet(plant::World& world, const MapperOptions& options, const Shel
   fleet_options.calibrated = !options.uncalibrated;
   if (options.links != 0) fleet_options.radio.links = options.links;
   const auto fleet = std::make_unique<plant::Fleet>(world, fleet_options);
-  shell.report(fmt::format("simulated {} mapper{} in '{}', their central on {}; Ctrl-C ends it",
-                           fleet->size(), fleet->size() == 1 ? "" : "s", world.model().name, line.name()));
+  shell.report(fmt::format("simulated {} in '{}', their central on {}; Ctrl-C ends it",
+                           client::counted(fleet->size(), "mapper"), world.model().name, line.name()));
   const SimulatedClock clock{options.speed};
   while (!shell.stop()) {
     fleet->advance_to(clock.now());
@@ -242,8 +243,8 @@ Ending serve_lines(plant::World& world, const MapperOptions& options, const Shel
     lines.push_back(std::make_unique<OwnLine>(std::move(*opened)));
     robots.push_back(std::make_unique<LinedRobot>(world.robot(i), *lines.back(), world.time()));
   }
-  shell.report(fmt::format("simulated {} mapper{} in '{}', each on its line in {}; Ctrl-C ends it",
-                           robots.size(), robots.size() == 1 ? "" : "s", world.model().name,
+  shell.report(fmt::format("simulated {} in '{}', each on its line in {}; Ctrl-C ends it",
+                           client::counted(robots.size(), "mapper"), world.model().name,
                            transport::robot_lines()));
   const SimulatedClock clock{options.speed};
   const auto next_event = [&robots] {

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "ocm/client/counted.hpp"
 #include "ocm/simulation/virtual_bus_server.hpp"
 
 #include "sim/serve/bus_report.hpp"
@@ -35,7 +36,7 @@ std::string names(const std::vector<const protocol::Topic*>& messages) {
 }
 
 std::string messages_of(const MessagePlayer& player) {
-  return fmt::format("{} message{}", player.size(), player.size() == 1 ? "" : "s");
+  return client::counted(player.size(), "message");
 }
 
 std::string_view name_of(const protocol::Catalogue& catalogue) {

@@ -17,6 +17,7 @@
 
 #include "ocm/base/time.hpp"
 #include "ocm/can/bus.hpp"
+#include "ocm/client/counted.hpp"
 #include "ocm/client/sample.hpp"
 #include "ocm/protocol/identifier.hpp"
 #include "ocm/protocol/request.hpp"
@@ -66,13 +67,6 @@ struct Finding {
   Ailment ailment = Ailment::other;
   std::string_view topic{};  ///< that it is about, if it is about one that is known
 };
-
-/// "1 frame", "2 frames" of "frame*".
-[[nodiscard]] inline std::string count(std::uint64_t number, std::string_view what) {
-  const std::size_t star = what.find('*');
-  return std::to_string(number) + " " + std::string{what.substr(0, star)} + (number == 1 ? "" : "s") +
-         std::string{what.substr(star + 1)};
-}
 
 /// Why a board started, if it broke down before: by the spec's name of the cause. Empty: it did not.
 [[nodiscard]] constexpr std::string_view breakdown_in_words(std::string_view reset) noexcept {
@@ -380,7 +374,7 @@ class Diagnosis {
     if (board.overload != 0) {
       const std::string running = sensors_of(index, board.publishing);
       tell(Ailment::overload, Severity::warning,
-           count(static_cast<std::uint64_t>(board.overload), "release* came late or not at all"),
+           counted(static_cast<std::uint64_t>(board.overload), "release* came late or not at all"),
            "ask for longer periods" + (running.empty() ? std::string{} : "; it publishes " + running));
     }
     if (board.load && *board.load >= load_high_percent)
@@ -394,12 +388,13 @@ class Diagnosis {
                : "a firmware that hung or crashed: note what was asked of it before");
     if (board.bus_errors != 0)
       tell(Ailment::bus_errors, Severity::note,
-           count(static_cast<std::uint64_t>(board.bus_errors), "error* on the bus or frames given up so far"),
+           counted(static_cast<std::uint64_t>(board.bus_errors),
+                   "error* on the bus or frames given up so far"),
            "few are normal when nodes come and go; many point to cable or termination");
     if (board.line_lost != 0)
       tell(Ailment::line_lost, Severity::warning,
-           count(static_cast<std::uint64_t>(board.line_lost),
-                 "time* so far a frame or a character of a host on its serial line was lost"),
+           counted(static_cast<std::uint64_t>(board.line_lost),
+                   "time* so far a frame or a character of a host on its serial line was lost"),
            "a serial line of 115200 baud carries some 440 frames/s: publish less, or use an adapter on the "
            "CAN bus");
     if (board.refused != 0) {
@@ -408,7 +403,7 @@ class Diagnosis {
       const std::string_view about = topic != nullptr ? topic->name : std::string_view{};
       const bool late = board.reason == "not_schedulable" && topic != nullptr;
       tell(late ? Ailment::not_schedulable : Ailment::refusals, Severity::note,
-           count(static_cast<std::uint64_t>(board.refused), "request* refused so far, the last for ") +
+           counted(static_cast<std::uint64_t>(board.refused), "request* refused so far, the last for ") +
                std::string{about.empty() ? "?" : about} + ": " +
                std::string{board.reason.empty() ? "?" : board.reason},
            late ? "ask for a longer period, or stop another stream of the board"
