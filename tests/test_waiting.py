@@ -36,6 +36,10 @@ class Lines(unittest.TestCase):
         with waiting.Program(["true"], stdin=subprocess.PIPE, stdout=subprocess.PIPE) as program:
             self.assertEqual((program.communicate(b"x" * (1 << 20)), program.returncode), ((b"", None), 0))
 
+    def test_bytes_that_are_no_text(self):
+        with waiting.Program(["printf", "\\377"], stdout=subprocess.PIPE, encoding="utf-8") as program:
+            self.assertRaises(UnicodeDecodeError, program.communicate)
+
     def test_one_that_does_not_end_in_time(self):
         with waiting.Program(["sleep", "60"], stdout=subprocess.PIPE) as program:
             self.assertRaises(subprocess.TimeoutExpired, program.communicate, timeout=0.1)

@@ -57,17 +57,20 @@ def starved_threads(pid):
 class Talk(threading.Thread):
     """Reads all of a stream, or writes a text to it, and closes it."""
 
-    def __init__(self, stream, text):
+    def __init__(self, stream, input):
         super().__init__(daemon=True)
-        self.stream, self.text = stream, text
+        self.stream, self.input, self.text, self.error = stream, input, None, None
         self.start()
 
     def run(self):
-        with contextlib.suppress(BrokenPipeError), self.stream:
-            if self.stream.readable():
-                self.text = self.stream.read()
-            elif self.text:
-                self.stream.write(self.text)
+        try:
+            with contextlib.suppress(BrokenPipeError), self.stream:
+                if self.stream.readable():
+                    self.text = self.stream.read()
+                elif self.input:
+                    self.stream.write(self.input)
+        except Exception as error:  # for who waits: bytes that are no text
+            self.error = error
 
 
 class Program(subprocess.Popen):
@@ -93,6 +96,8 @@ class Program(subprocess.Popen):
             talk.join(end and max(0, end - time.monotonic()))
             if talk.is_alive():  # it goes on, for who asks again
                 raise subprocess.TimeoutExpired(self.args, timeout)
+            if talk.error:
+                raise talk.error
         self.wait(end and max(0, end - time.monotonic()))
         return tuple(talk and talk.text for talk in (self.talks.get(self.stdout), self.talks.get(self.stderr)))
 

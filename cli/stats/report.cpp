@@ -171,9 +171,9 @@ std::vector<std::string> summary(const Bus& bus) {
   fault(counters.errors, "error frame");
   fault(figures.overflows, "overflow* of the CAN controller");
   fault(bus.drops, "frame* lost");
-  fault(figures.fd_frames - figures.not_in_load, "CAN FD frame*");
+  fault(figures.fd_frames - figures.not_in_load, "CAN FD frame");
   fault(figures.not_in_load, figures.bit_rates.nominal == 0
-                                 ? "CAN FD frame*"
+                                 ? "CAN FD frame"
                                  : "CAN FD frame*, not in the load without --data-bitrate");
   fault(counters.remote, "remote frame");
   fault(counters.transport, "frame* of the transport protocol of J1939");

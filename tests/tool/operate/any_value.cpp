@@ -54,14 +54,18 @@ TEST_CASE("operate: every value of a file may be missing or wrong") {
         CAPTURE(at.to_string(), changed->dump());
         const auto loaded = operate::parse(changed->dump(), "changed.json", amiro::catalogue, 500'000);
         CHECK((loaded.file == nullptr) != loaded.problems.empty());
-        for (const auto& problem : loaded.problems) {
-          CHECK(std::string_view{problem.place}.substr(0, 13) == "changed.json:");
-          CHECK_FALSE(problem.what.empty());
-          CHECK_FALSE(problem.remedy.empty());
-        }
+        const auto is_said = [](const std::vector<spec::Problem>& problems) {
+          for (const auto& problem : problems) {
+            CHECK(std::string_view{problem.place}.substr(0, 13) == "changed.json:");
+            CHECK_FALSE(problem.what.empty());
+            CHECK_FALSE(problem.remedy.empty());
+          }
+        };
+        is_said(loaded.problems);
         (loaded.file ? taken : refused) += 1;
         if (!loaded.file) continue;
         const auto study = operate::study(*loaded.file, 500'000);
+        is_said(study.doubts);
         CHECK(Json::accept(operate::to_json(study)));
         CHECK_FALSE(operate::to_table(study).empty());
       }
