@@ -3,16 +3,19 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "ocm/client/frame_index.hpp"
 #include "ocm/protocol/request.hpp"
 
 #include "cli/command/behaviour_watch.hpp"
 #include "cli/command/commanding.hpp"
 #include "cli/command/operated_bus.hpp"
 #include "cli/command/timeline.hpp"
+#include "cli/shared/behaviour_sensor.hpp"
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/messages.hpp"
 #include "cli/shared/set_points.hpp"
@@ -28,8 +31,9 @@ using Clock = Timeline::Clock;
 constexpr base::Duration progress_period = std::chrono::milliseconds{100};
 /// After so long without a sample the sensor is asked again.
 constexpr base::Duration longest_silence = std::chrono::milliseconds{500};
-/// After so long without a first sample this is said; it goes on, because the board may have heard all the
-/// same.
+constexpr base::Duration look_again = std::chrono::milliseconds{20};
+/// After so long without a first sample this is said; a behaviour goes on, because the board may have heard
+/// all the same.
 constexpr base::Duration told_after = std::chrono::seconds{2};
 
 constexpr const char* usual_speed = "0.1m/s";
@@ -85,7 +89,15 @@ std::string remedy_for(const std::string& ended) {
   return "another program has commanded the robot";
 }
 
-/// `none`: ends what any board does by itself. The exit code.
+/// Nothing that a board should have sent came, so it may not have done what was commanded.
+transport::Failure nothing_shows(std::string_view missing, std::string_view board,
+                                 const transport::Bus& bus) {
+  return {fmt::format("behave: no {} came, so nothing shows that {} has done it", missing, board),
+          fmt::format("is board {} powered and on {}? See `amiroctl doctor`", board, bus.name())};
+}
+
+/// `none`: ends what any board does by itself, and hears what the wheels' board then does. The exit code;
+/// leaves through cli::fail where that board says nothing.
 int end_all(Session& session, const BehaveOptions& options) {
   if (options.lasting) fail({"behave: none takes no --for", "drop --for"}, exit_usage);
   if (!options.speed.empty()) fail({"behave: none takes no --speed", "drop --speed"}, exit_usage);
@@ -101,9 +113,26 @@ int end_all(Session& session, const BehaveOptions& options) {
     return exit_success;
   }
   const auto bus = open_to_command(session, "behave");
-  Timeline timeline{*bus, catalogue, "behave", Timeline::Others::allowed, options.confirm(), {}};
+  const BehaviourSensor sensor{catalogue};
+  const client::FrameIndex index{catalogue};
+  bool heard = !sensor.exists() || options.no_confirm;
+  if (!heard) command.frames.push_back(sensor.request());
+  catch_interrupts();
+  Timeline timeline{*bus,
+                    catalogue,
+                    "behave",
+                    Timeline::Others::allowed,
+                    options.confirm(),
+                    [&](const can::Received& received) {
+                      heard = heard || sensor.active_in(index, received.frame).has_value();
+                    }};
   timeline.carry_out_once(command);
-  return timeline.finish() ? exit_success : exit_failure;
+  if (!timeline.finish()) return exit_failure;
+  for (const auto end = Clock::now() + told_after; !heard && Clock::now() < end;)
+    if (!timeline.wait(std::min(end, Clock::now() + look_again)))
+      return exit_code_after_interrupt(exit_success);
+  if (!heard) fail(nothing_shows(sensor.topic().name, catalogue.board_name(sensor.topic()), *bus));
+  return exit_success;
 }
 
 /// A behaviour of a board, from listening for others to its end.
@@ -189,7 +218,7 @@ class Behaviour {
     bool told = false;
     auto heard = Clock::now();  // or asked
     while (goes_on_ && !over() && Clock::now() < end) {
-      goes_on_ = timeline_.wait(std::min(end, Clock::now() + std::chrono::milliseconds{20}));
+      goes_on_ = timeline_.wait(std::min(end, Clock::now() + look_again));
       if (!told && unheard() && Clock::now() - begun_ >= told_after) {
         told = true;
         const auto failure = unanswered();
@@ -227,8 +256,7 @@ class Behaviour {
     const auto board = catalogue_->board_name(*topic_);
     const std::string missing =
         watch_ ? std::string{watch_->sensor().name} : fmt::format("set point of {}", motors_->name);
-    return {fmt::format("behave: no {} came, so nothing shows that {} has done it", missing, board),
-            fmt::format("is board {} powered and on {}? See `amiroctl doctor`", board, bus_->name())};
+    return nothing_shows(missing, board, *bus_);
   }
 
   void ask_progress() {

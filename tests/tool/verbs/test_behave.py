@@ -73,6 +73,14 @@ class Behave(Case):
             self.assertIn("avoid was ended: stopped", err)
             self.assertTrue(self.standing())
 
+    def test_none_that_no_board_can_have_heard(self):
+        self.start_sim("--without", "di_wheel_drive")
+        _, err = self.run_tool("behave", "none", code=1)
+        self.assertIn("behave: no behaviour came, so nothing shows that di_wheel_drive has done it\n"
+                      "          is board di_wheel_drive powered and on sim?", err)
+        _, err = self.run_tool("behave", "none", "--no-confirm")  # asks no board
+        self.assertNotIn("behave", err)
+
     def test_one_whose_program_stood_still_is_ended(self):
         self.start_sim()
         listener = self.listen("--commands", "avoid", "--timeout", "20s")
