@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 
 #include <fmt/format.h>
 
@@ -183,7 +184,7 @@ std::string to_table(const Study& study, const Advice& advice, bool colour) {
     text += "T with a +: the shortest distance of two that are sent on events; they may come less often.\n";
   for (const auto& queue : study.queues)
     text += queue.frames > 0 ? fmt::format("{} has {} waiting or on the bus at most.\n", queue.node,
-                                           client::counted(queue.frames, "frame"))
+                                           client::counted(static_cast<std::uint64_t>(queue.frames), "frame"))
                              : fmt::format("There is no bound on how many frames of {} wait.\n", queue.node);
   if (!study.tests.empty())
     text += "Tests of the utilisation alone (sufficient, not necessary; R above is exact):\n";
