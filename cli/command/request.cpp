@@ -4,7 +4,6 @@
 #include <chrono>
 #include <memory>
 #include <optional>
-#include <unistd.h>
 #include <vector>
 
 #include <fmt/format.h>
@@ -15,12 +14,12 @@
 #include "cli/command/bus_admission.hpp"
 #include "cli/command/commanding.hpp"
 #include "cli/command/refusal_watch.hpp"
+#include "cli/output/format_options.hpp"
 #include "cli/output/printer.hpp"
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/live.hpp"
 #include "cli/shared/messages.hpp"
 #include "cli/shared/outgoing.hpp"
-#include "cli/shared/terminal.hpp"
 #include "cli/shared/unhurried_messages.hpp"
 #include "cli/shared/values.hpp"
 #include "cli/words/quantity.hpp"
@@ -78,6 +77,17 @@ void send_and_await(const protocol::Catalogue& catalogue, transport::Bus& bus, R
                           catalogue.board_name(topic), bus.name(), catalogue.bit_rate)});
 }
 
+/// Leaves through cli::fail where a field of another topic is chosen. All fields exist.
+void expect_fields_of(const protocol::Topic& topic, const std::string& verb,
+                      const protocol::Catalogue& catalogue, const FormatOptions& format) {
+  const auto selection = Selection::of(catalogue, format.fields);
+  for (const ChosenField& chosen : selection->fields())
+    if (chosen.topic != &topic)
+      fail({fmt::format("{}: --field {}, and what is asked is {}", verb, chosen.name, topic.name),
+            fmt::format("`amiroctl info {}` shows its fields", topic.name)},
+           exit_usage);
+}
+
 }  // namespace
 
 void add_request_options(Verb verb, Session& session, std::string_view words_help, Starts starts) {
@@ -86,6 +96,7 @@ void add_request_options(Verb verb, Session& session, std::string_view words_hel
         : commanding(app, s, help, Commanding::Sends::requests) {}
     Commanding commanding;
     AdmissionOptions admission;
+    FormatOptions format;  ///< of `once`
     base::Duration wait = std::chrono::seconds{2};
   };
   const auto options = std::make_shared<Options>(verb, session, words_help);
@@ -94,25 +105,28 @@ void add_request_options(Verb verb, Session& session, std::string_view words_hel
                      starts == Starts::stream ? "show the first sample; T: how long to wait for it"
                                               : "how long to wait for the sample, with --no-confirm, too");
   wait.expected(0, 1).type_name("[T]").takes(accepted_lasting()).default_text(words::to_text(options->wait));
-  if (starts == Starts::stream) add_admission_options(verb, options->admission);
+  if (starts == Starts::stream)
+    add_admission_options(verb, options->admission);
+  else
+    add_format_options(verb, options->format);
   verb.callback([options, wait, starts, &session] {
     protocol::Catalogue catalogue = options->commanding.catalogue();
     const auto command = options->commanding.parse();
+    const auto& verb_name = options->commanding.verb();
+    std::optional<Printer> printer;
+    if (starts == Starts::sample || wait.count() != 0)
+      printer.emplace(chosen_output(verb_name, catalogue, session.colour(), options->format));
+    expect_fields_of(*command.answers, verb_name, catalogue, options->format);
     const bool dry_run = options->commanding.dry_run();
     if (dry_run && !options->admission.explain) return print_frames(command);
     never_wait_for_messages();
     const auto bus = session.open_bus();
     if (const std::uint32_t rate = bus->bit_rate(); rate != 0) catalogue.bit_rate = rate;
-    RefusalWatch refusals{catalogue, options->commanding.verb(), options->commanding.confirm()};
+    RefusalWatch refusals{catalogue, verb_name, options->commanding.confirm()};
     admit(catalogue, *bus, command, options->admission, refusals);
     if (dry_run) return print_frames(command);
-    const auto& verb_name = options->commanding.verb();
     if (options->commanding.confirm() == Confirm::no && wait.count() == 0)
       return send_all(*bus, refusals, verb_name, command);
-    std::optional<Printer> printer;
-    if (starts == Starts::sample || wait.count() != 0)
-      printer.emplace(make_output(isatty(STDOUT_FILENO) != 0 ? Format::pretty : Format::json, catalogue, {},
-                                  session.colour(), columns_of_output));
     send_and_await(catalogue, *bus, refusals, verb_name, command, options->wait,
                    printer ? &*printer : nullptr);
   });

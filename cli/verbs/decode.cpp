@@ -21,7 +21,7 @@ namespace {
 struct DecodeOptions {
   std::vector<std::string> files;
   ChoiceOptions choice;
-  DisplayOptions display;
+  FormatOptions format;
   std::string from;
   std::optional<base::Duration> since, until;
   std::uint64_t count = 0;
@@ -107,7 +107,7 @@ std::uint64_t understood(const Display& display) {
 void decode(Session& session, const DecodeOptions& options, int& exit_code) {
   const auto& catalogue = session.catalogue();
   catch_interrupts();
-  Decoding decoding{Display{"decode", session, options.display}, Window{catalogue, options}, options.count};
+  Decoding decoding{Display{"decode", session, options.format}, Window{catalogue, options}, options.count};
   if (options.since && options.until && *options.until < *options.since)
     fail({"decode: --until is before --since", "both count from the first frame of the log"}, exit_usage);
   // A topic among the files is better known before the first of them is printed.
@@ -152,7 +152,7 @@ void add_decode(Verb app, Session& session, int& exit_code) {
   verb.add_option("files", options->files,
                   "logs of any format, one after another; default: - (standard input)")
       .type_name("[FILE ...]");
-  add_display_options(verb, options->display);
+  add_format_options(verb, options->format);
   verb.add_option("--topic", options->choice.topics, "only this topic; repeatable")
       .type_name("TOPIC")
       .one_a_mention();

@@ -20,7 +20,7 @@ namespace {
 
 struct ListenOptions {
   ChoiceOptions choice;
-  DisplayOptions display;
+  FormatOptions format;
   bool commands = false;
   bool strict = false;
   std::uint64_t count = 0;
@@ -35,7 +35,7 @@ constexpr base::Duration silence = std::chrono::seconds{2};
 std::vector<const protocol::Topic*> awaited_topics(const protocol::Catalogue& catalogue, const Choice& choice,
                                                    const ListenOptions& options) {
   const auto& topics = choice.topics();
-  const auto selection = Selection::of(catalogue, options.display.fields);
+  const auto selection = Selection::of(catalogue, options.format.fields);
   if (!selection || selection->everything()) return topics;
   std::vector<const protocol::Topic*> shown;
   for (const ChosenField& field : selection->fields())
@@ -59,7 +59,7 @@ void listen(Session& session, const ListenOptions& options, int& exit_code) {
         return topic->kind == protocol::Kind::actuator;
       });
 
-  Display display{"listen", session, options.display};
+  Display display{"listen", session, options.format};
   choice.on_interface(0, bus->name());
   display.on_interface(0, bus->name());
   const ListenedUntil listened;
@@ -118,7 +118,7 @@ void add_listen(Verb app, Session& session, int& exit_code) {
   const auto options = std::make_shared<ListenOptions>();
   verb.add_option("topics", options->choice.topics, "only these; default: everything")
       .type_name("[TOPIC ...]");
-  add_display_options(verb, options->display);
+  add_format_options(verb, options->format);
   add_choice_options(verb, options->choice);
   verb.add_flag("--commands", options->commands, "show requests and set points too");
   verb.add_flag("--strict", options->strict, "exit 1 when frames were lost, unknown, wrong or incomplete");

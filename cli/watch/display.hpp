@@ -1,37 +1,27 @@
-/// What the verbs that show frames have in common, whether the frames come from a bus or out of a log: the
-/// format, the choice of topics and fields, and the summary at the end.
+/// What the verbs that show frames have in common, whether the frames come from a bus or out of a log: what
+/// they mean, how they are shown, and the summary at the end.
 #pragma once
 
 #include <cstdint>
 #include <optional>
-#include <string>
 #include <string_view>
-#include <vector>
 
 #include "ocm/client/sample.hpp"
 #include "ocm/log/entry.hpp"
 #include "ocm/measure/statistics.hpp"
 
+#include "cli/output/format_options.hpp"
 #include "cli/output/printer.hpp"
-#include "cli/shared/arguments.hpp"
 #include "cli/shared/session.hpp"
 #include "cli/watch/contradictions.hpp"
 
 namespace ocm::cli {
 
-struct DisplayOptions {
-  bool pretty = false, json = false, csv = false, raw = false;
-  std::vector<std::string> fields;
-};
-
-/// --pretty, --json, --csv, --raw and --field.
-void add_display_options(Verb verb, DisplayOptions& options);
-
 /// Frames in, text on stdout out.
 class Display {
  public:
   /// `verb` is for messages. Prints the head line, where the format has one.
-  Display(std::string_view verb, Session& session, const DisplayOptions& options);
+  Display(std::string_view verb, Session& session, const FormatOptions& options);
 
   /// What the entry means, which is counted. Valid until the next.
   [[nodiscard]] client::Reception understand(const log::Entry& entry) {

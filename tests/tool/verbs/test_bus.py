@@ -42,6 +42,33 @@ class OnTheBus(Case):
         frames = self.objects(self.run_tool("once", "ring", "--wait", "5s")[0])
         self.assertEqual(len(frames), 8)
 
+    def test_once_in_each_format(self):
+        self.start_sim("--frozen")
+        out, _ = self.run_tool("once", "odom", "--csv")
+        head, *lines = out.splitlines()
+        self.assertEqual(head, "time,topic,field,value,unit")
+        self.assertEqual([line.split(",")[1:] for line in lines],
+                         [["odometry", *rest] for rest in (("velocity.x", "0", "m/s"), ("velocity.z", "0", "rad/s"), ("pose.x", "0", "m"),
+                                                           ("pose.y", "0", "m"), ("pose.orientation", "0", "rad"))])
+        out, _ = self.run_tool("once", "odom", "--csv", "--field", "odom.pose.x", "--field", "odom.pose.y")
+        self.assertRegex(out, r"^time,odometry\.pose\.x,odometry\.pose\.y\n[0-9.]+,0,0\n$")
+        out, _ = self.run_tool("once", "odom", "--raw")
+        self.assertRegex(out, r"^\([0-9.]+\) sim 602#0{16}\n\([0-9.]+\) sim 603#0{16}\n$")
+        out, _ = self.run_tool("once", "odom", "--pretty", "--field", "odom.pose")
+        self.assertRegex(out, "medium +odometry +pose.x +0 m  pose.y +0 m  pose.orientation +0 rad\n$")
+        velocity, = self.objects(self.run_tool("once", "odom", "--json", "--field", "odom.velocity")[0])
+        self.assertEqual(velocity["fields"], {"x": 0, "z": 0})
+
+    def test_once_asks_nothing_where_its_options_are_wrong(self):
+        for options, words in ((("--field", "gyro.x"), "once: --field gyroscope.x, and what is asked is odometry\n          `amiroctl info odometry`"),
+                               (("--field", "odom.speed"), "once: no field 'odom.speed'\n          one of: odom.velocity.x"),
+                               (("--field", "odom.speed", "--dry-run"), "once: no field 'odom.speed'"),
+                               (("--raw", "--field", "odom.pose"), "once: --field with --raw"),
+                               (("--csv", "--json"), "once: --json and --csv exclude each other")):
+            out, err = self.run_tool("once", "odom", *options, code=2)  # no bus is needed for that
+            self.assertIn(words, err)
+            self.assertEqual(out, "")
+
     def test_wait_fails_in_time_and_says_what_to_check(self):
         self.start_sim("--without", "power_management")
         begin = time.monotonic()
