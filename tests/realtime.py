@@ -81,6 +81,7 @@ class Spare:
 
     def __enter__(self):
         self.late = 0.0
+        self.held_up = []  # (from, to) of each wait that ended later than it should have, by time.monotonic()
         self.terminal_late = 0.0
         self.blocked = collections.Counter()
         self.done = threading.Event()
@@ -108,7 +109,10 @@ class Spare:
             begin = time.monotonic()
             over = self.done.wait(0.01)  # then once more: what ended just now was late, too
             if not over:
-                self.late = max(self.late, time.monotonic() - begin - 0.01)
+                woken = time.monotonic()
+                self.late = max(self.late, woken - begin - 0.01)
+                if woken - begin > 0.02:
+                    self.held_up.append((begin + 0.01, woken))
             if over or not looks or begin - looks[-1][0] >= WINDOW / LOOKS:
                 looks.append((begin, self.waits(begin - looks[-1][0] if looks else 0.0)))
                 before = looks[0][1]
@@ -123,6 +127,10 @@ class Spare:
             self.blocked.update({(program.pid, task): since for task in program.blocked_threads()})
             waits |= {(program.pid, task): wait for task, wait in program.starved_threads().items()}
         return {thread: wait + self.blocked[thread] for thread, wait in waits.items()}
+
+    def held_up_between(self, begin, end):
+        """For how long, of this time, the machine let nothing run that waited for it."""
+        return sum(max(0.0, min(end, late_end) - max(begin, late_begin)) for late_begin, late_end in self.held_up)
 
     def enough(self):
         return self.late < MOST_LATE and self.taken < MOST_TAKEN

@@ -46,15 +46,16 @@ def attempt(function, context, tries=5):
     beside all of it for minutes."""
     for left in reversed(range(tries)):
         try:
-            with realtime.Spare() as spare:
+            with realtime.Spare() as context.spare:
                 function(context)
             return None
         except Exception as error:  # a check must not take the others with it
             text = str(error) if isinstance(error, AssertionError) else traceback.format_exc()
         text = '\n'.join('#   ' + line for line in text.splitlines())
-        if spare.late < realtime.MOST_LATE or not left:
+        late = context.spare.late
+        if late < realtime.MOST_LATE or not left:
             return text
-        print(f'{text}\n#   again: meanwhile a thread woke {spare.late * 1000:.0f} ms late', flush=True)
+        print(f'{text}\n#   again: meanwhile a thread woke {late * 1000:.0f} ms late', flush=True)
         realtime.until_calm()
 
 
