@@ -72,7 +72,7 @@ class HeldUp(unittest.TestCase):
             waiting.until(lambda: spare.begin[1] + 1 < realtime.processor_times()[1], "the machine has run")
         self.assertLess(spare.late, 0.3)
 
-    def test_when_the_machine_stood_still(self):
+    def test_when_the_machine_was_held_up(self):
         spare = realtime.Spare()
         spare.held_up = [(1.0, 1.5), (3.0, 4.0)]
         for begin, end, held_up in ((0.0, 9.0, 1.5), (1.25, 3.25, 0.5), (1.5, 3.0, 0.0), (3.1, 3.2, 0.1), (8.0, 9.0, 0.0)):

@@ -204,14 +204,14 @@ def _(context):
             seen = re.findall(r'^\((\S+)\) \S+ 123#(?:#.)?(\S+)', log.stdout, re.M)
         matches(stderr, r'sent 200 frames in [0-9.]+s')
         equal([int(data, 16) for _, data in seen], list(range(200)), 'frames')
-        # By the clock that tells where this machine stood still: a frame that was due meanwhile comes behind that.
+        # By the clock that tells when this machine was held up: a frame that was due meanwhile comes behind that.
         monotonic = time.monotonic() - time.time()
         came = [float(stamp) + monotonic for stamp, _ in seen]
         begin = min(at - i * 0.02 for i, at in enumerate(came))
         late = [at - begin - i * 0.02 for i, at in enumerate(came)]
         held_up = [context.spare.held_up_between(begin + i * 0.02 - 0.01, at) for i, at in enumerate(came)]
-        own = [each - stood_still for each, stood_still in zip(late, held_up)]
-        expect(max(own) < 0.1, f'{max(late):.4f} s off, {max(own):.4f} s more than the machine stood still')
+        own = [each - held for each, held in zip(late, held_up)]
+        expect(max(own) < 0.1, f'{max(late):.4f} s off, {max(own):.4f} s more than the machine was held up')
         said = float(re.search(r'in ([0-9.]+)s', stderr)[1])
         expect(3.97 <= said < 4.08 + max(held_up), stderr)
         print(f'#   median {sorted(late)[100] * 1e6:.0f} us off, worst {max(late) * 1e6:.0f} us')
