@@ -7,6 +7,7 @@
 #include "ocm/transport/interfaces.hpp"
 #include "ocm/transport/virtual_bus.hpp"
 
+#include "cli/shared/operator_link.hpp"
 #include "cli/words/colour.hpp"
 #include "cli/words/topics.hpp"
 #include "generator/targets/target.hpp"
@@ -47,8 +48,12 @@ Line read_line(Verb program, Session& session, const std::vector<std::string>& w
   Line line{program, {}, std::nullopt, false};
   for (std::size_t i = 0; i + 1 < words.size(); ++i) {
     const std::string& word = words[i];
+    const auto heed = [&](bool spec, bool bus, const std::string& value) {
+      if (spec) session.spec_files.push_back(value);
+      if (bus) session.bus_name = value;
+    };
     if (line.waiting) {
-      if (line.waiting->is_named("--spec")) session.spec_files.push_back(word);
+      heed(line.waiting->is_named("--spec"), line.waiting->is_named("--bus"), word);
       line.waiting.reset();
     } else if (line.only_positionals || word.size() < 2 || word.front() != '-') {
       const Verb verb = line.positionals.empty() ? find_verb(line.verb, word) : Verb{};
@@ -59,7 +64,8 @@ Line read_line(Verb program, Session& session, const std::vector<std::string>& w
     } else if (word == "--") {
       line.only_positionals = true;
     } else if (const std::size_t equals = word.find('='); equals != std::string::npos) {
-      if (word.substr(0, equals) == "--spec") session.spec_files.push_back(word.substr(equals + 1));
+      const std::string name = word.substr(0, equals);
+      heed(name == "--spec", name == "--bus", word.substr(equals + 1));
     } else if (const auto option = find_option(line.verb, word); option && wants_value(*option)) {
       line.waiting = option;
     }
@@ -186,6 +192,7 @@ class Completer {
     if (names("WORLD")) return worlds();
     if (names("BUS")) return buses();
     if (names("RATE")) return topics(Of::sensors, "=");
+    if (names("CONFIGURATION")) return configurations();
     if (names("TARGET")) {
       for (const auto& target : generate::targets()) add(target.name, target.description);
       return;
@@ -206,6 +213,31 @@ class Completer {
   void worlds() {
     for (const auto& world : sim::worlds::world_texts()) add(world.name, "built in");
     files();
+  }
+  /// Where a request would lead the operator that runs, of a bus that was named or of any. One that is
+  /// stopped takes a second.
+  void configurations() {
+    std::vector<std::string> buses;
+    if (!session_.bus_name.empty()) {
+      buses.push_back(session_.bus_name);
+    } else {
+      for (const auto& interface : transport::can_interfaces()) buses.push_back(interface.name);
+      buses.emplace_back("sim");
+    }
+    for (const std::string& bus : buses) {
+      const auto link = connect_operator(bus, "completion");
+      if (!link || *link == nullptr) continue;
+      const std::string answer = (*link)->ask(operator_ways).text;
+      std::string_view rest = answer;
+      const auto next_line = [&rest] {
+        const std::size_t size = std::min(rest.find('\n'), rest.size());
+        const std::string_view line = rest.substr(0, size);
+        rest.remove_prefix(std::min(size + 1, rest.size()));
+        return line;
+      };
+      const std::string from = fmt::format("from {}", next_line());
+      while (!rest.empty()) add(next_line(), from);
+    }
   }
   void boards() {
     for (const auto& board : session_.catalogue().boards) add(board.name, board.mcu);

@@ -21,7 +21,8 @@ struct Completion {
 };
 
 /// `words` are those behind the program's name; the last is the one that is being typed, and may be empty.
-/// Candidates begin with it. A `--spec` among the words is heeded; one that cannot be read gives no topics.
+/// Candidates begin with it. A `--spec` or `--bus` among the words is heeded; a spec that cannot be read
+/// gives no topics.
 [[nodiscard]] Completion complete(Verb program, Session& session, const std::vector<std::string>& words);
 
 }  // namespace ocm::cli

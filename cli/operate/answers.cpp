@@ -170,4 +170,13 @@ Json Answers::why_json() const {
           {"leaves", ways}};
 }
 
+std::string Answers::ways() const {
+  const auto configurations = file.tables.configurations;
+  const std::uint16_t here = supervisor.configuration();
+  std::string text = fmt::format("{}\n", configurations[here].name);
+  for (std::uint16_t i = 0; i < configurations.size(); ++i)
+    if (i != here && supervisor.leads_to(i)) text += fmt::format("{}\n", configurations[i].name);
+  return text;
+}
+
 }  // namespace ocm::cli::operate

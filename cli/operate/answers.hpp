@@ -41,6 +41,8 @@ struct Answers {
   [[nodiscard]] Json status_json(base::Time now) const;
   [[nodiscard]] std::string why() const;
   [[nodiscard]] Json why_json() const;
+  /// In lines where it is, and where a request leads from there.
+  [[nodiscard]] std::string ways() const;
 };
 
 }  // namespace ocm::cli::operate

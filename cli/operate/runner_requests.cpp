@@ -45,6 +45,7 @@ std::string Runner::answer(Caller& caller, std::string_view request) {
   if (request == "status json") return yes(line(answers().status_json(now())));
   if (request == "why") return yes(answers().why());
   if (request == "why json") return yes(line(answers().why_json()));
+  if (request == operator_ways) return yes(answers().ways());
   if (request == "hold") return hold(caller, true);
   if (request == "resume") return hold(caller, false);
   if (request == "delivery") {

@@ -1,6 +1,6 @@
 /// The operator that runs on a bus of this machine, as other programs of the same user see it. To "commands
 /// FRAME" it answers whether it commands that actuator itself: nothing, or "repeats" or "once", and where it
-/// is.
+/// is; to "ways" in lines where it is, and where a request leads from there.
 #pragma once
 
 #include <memory>
@@ -15,6 +15,7 @@ namespace ocm::cli {
 
 inline constexpr std::string_view operator_commands = "commands ";
 inline constexpr std::string_view operator_repeats = "repeats";
+inline constexpr std::string_view operator_ways = "ways";
 
 /// Where the operator of a bus listens: by the name that the bus has for itself.
 [[nodiscard]] std::string operator_path(std::string_view bus);

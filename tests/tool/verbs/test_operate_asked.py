@@ -35,6 +35,16 @@ def x_of(frame):
 class Asked(Operating):
     """amiroctl operator, and other programs that command the robot while an operator runs."""
 
+    def test_the_shell_completes_where_a_request_leads(self):
+        self.start_sim()
+        switch = ("completion", "--words", "--", "operator", "switch")
+        self.assertEqual(self.run_tool(*switch, "")[0], "words\n")
+        self.operate(document=GUARDED)
+        self.assertEqual(self.run_tool(*switch, "")[0], "words\nslow\tfrom driving\nhalted\tfrom driving\n")
+        self.run_tool("operator", "switch", "slow")
+        self.assertEqual(self.run_tool(*switch, "d")[0], "words\ndriving\tfrom slow\n")
+        self.assertEqual(self.run_tool(*switch, "--bus", "vcan7", "")[0], "words\n")
+
     def test_it_says_what_it_does_and_why(self):
         self.start_sim()
         operator = self.operate(document=GUARDED)
