@@ -85,7 +85,7 @@ def eventually(holds, what, limit=30):
 
 def sh(*command):
     """Runs a command that must succeed; returns its stdout."""
-    done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=60)
+    done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=300)
     expect(done.returncode == 0, f'{" ".join(command)}: exit {done.returncode}: {done.stderr.strip()}')
     return done.stdout
 

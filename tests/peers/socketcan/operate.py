@@ -249,7 +249,7 @@ def _(context):
             sh('gcc', '-std=c99', '-D_GNU_SOURCE', '-O1', '-I' + folder, '-I' + os.path.join(context.source, 'include'),
                os.path.join(context.source, 'examples', name + '.c'), '-lm', '-o', program)
             with Candump('vcan1') as log:
-                done = subprocess.run([program, 'vcan1', str(steps)], text=True, capture_output=True, timeout=120)
+                done = subprocess.run([program, 'vcan1', str(steps)], text=True, capture_output=True, timeout=600)
                 equal((done.returncode, done.stderr), (0, ''), name)
                 matches(done.stdout, '0( frames)? lost')
                 frames = log.finish()

@@ -9,7 +9,7 @@ from harness import Process, as_nobody, check, equal, expect, forbid_can_sockets
 def catch2(*command, **options):
     """Runs a Catch2 program and shows what it says of a failure."""
     done = subprocess.run(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-                          text=True, timeout=120, **options)
+                          text=True, timeout=600, **options)
     expect(done.returncode == 0, f'{" ".join(command)}: exit {done.returncode}\n{done.stdout}')
     expect('All tests passed' in done.stdout, f'no test ran: {done.stdout}')
 

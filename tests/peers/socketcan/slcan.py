@@ -22,7 +22,7 @@ class Relay:
     def finish(self):
         """Frames that the kernel sent, and the tool; lines that were none: none."""
         sh('ip', 'link', 'set', self.name, 'down')
-        out, _ = self.process.communicate(timeout=60)
+        out, _ = self.process.communicate(timeout=300)
         counts = re.fullmatch(r'kernel sent (\d+), faults (\d+); other sent (\d+), faults (\d+)\n', out)
         expect(counts, f'what the relay said: {out!r}')
         equal((counts[2], counts[4]), ('0', '0'), 'lines that the adapters did not understand')
@@ -39,7 +39,7 @@ class Relay:
 
 def tool(context, relay, *arguments, code=0):
     done = subprocess.run([context.amiroctl, '--bus', relay.bus, *arguments], stdin=subprocess.DEVNULL, text=True,
-                          capture_output=True, timeout=60)
+                          capture_output=True, timeout=300)
     equal(done.returncode, code, f'exit code of {arguments}: {done.stderr.strip()}')
     return done.stdout
 
@@ -130,7 +130,7 @@ def _(context):
 def _(context):
     with Adapter() as adapter:
         done = subprocess.run([context.amiroctl, '--bus', f'slcan:{os.ttyname(adapter.slave)}', 'send', '123#'],
-                              stdin=subprocess.DEVNULL, text=True, capture_output=True, timeout=20)
+                              stdin=subprocess.DEVNULL, text=True, capture_output=True, timeout=100)
         equal(done.returncode, 1, 'exit code')
         for words in ("taken by the kernel's slcan driver", 'ip link show type can'):
             expect(words in done.stderr, f'{words!r} is not in: {done.stderr}')

@@ -54,7 +54,7 @@ def amiroctl(context, *arguments, code=0, prefix=(), **options):
     """Runs the tool to its end; returns stdout, stderr."""
     command = [*prefix, context.amiroctl, *arguments]
     done = subprocess.run(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-                          timeout=60, **options)
+                          timeout=300, **options)
     equal(done.returncode, code, f'exit code of {" ".join(command)} (stderr: {done.stderr.strip()})')
     return done.stdout, done.stderr
 

@@ -135,7 +135,7 @@ class Config(harness.Case):
         for text, what, remedy in (
                 ('[publish]\nbus = "sim"\n', "bus has no effect in [publish]", "write it above the first table"),
                 ('[analyse.bus]\nbus = "sim"\n', "bus has no effect in [analyse.bus]", "write it above the first table"),
-                ('[list]\npretty = true\n', "pretty has no effect in [list]", "in [listen], [decode]"),
+                ('[list]\npretty = true\n', "pretty has no effect in [list]", "in [once], [listen], [decode]"),
                 ('[analyse]\nbitrate = "500k"\n', "bitrate has no effect in [analyse]", "[analyse.bus]")):
             self.write(text)
             _, err = self.run_tool("list", code=2)
