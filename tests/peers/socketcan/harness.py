@@ -41,16 +41,23 @@ def equal(got, wanted, what):
     expect(got == wanted, f'{what}: got {got!r} instead of {wanted!r}')
 
 
+def interfaces():
+    return set(os.listdir('/sys/class/net'))
+
+
 def attempt(function, context, tries=5):
     """What is wrong, None: nothing. As realtime.py does: again where this machine held up a thread for long. Compilers may be
     beside all of it for minutes."""
     for left in reversed(range(tries)):
+        before = interfaces()
         try:
             with realtime.Spare() as context.spare:
                 function(context)
             return None
         except Exception as error:  # a check must not take the others with it
             text = str(error) if isinstance(error, AssertionError) else traceback.format_exc()
+        for name in interfaces() - before:  # of a program that was killed
+            subprocess.run(['ip', 'link', 'delete', name], check=True)
         text = '\n'.join('#   ' + line for line in text.splitlines())
         late = context.spare.late
         if late < realtime.MOST_LATE or not left:
