@@ -237,7 +237,6 @@ void Recorder::look(Port& port) {
   }
   port.capture->look();
   const BusState state = port.capture->state();
-  writing_.set_dropped(port.number, port.lost());
   if (state == std::exchange(port.state, state)) return;
   if (on_terminal_) erase_line();
   if (state == BusState::up) remark(fmt::format("{} is up again", port.name));

@@ -104,7 +104,7 @@ class Goto(Line):
         self.avr.start = (0.5, 0.5, 0.0)
         out, err = self.tool("goto", "AVR", "0", "30", code=1)
         self.assertEqual(out, "AVR: x 10 cm, y 0 cm, heading 0 deg\n")
-        self.assertIn("stopped 20 cm", err)
+        self.assertEqual(err, "goto: AVR heard it, but stopped 20 cm and 0 deg away from there: is something in front of it?\n")
 
     def test_a_program_that_did_not_run_blames_no_obstacle(self):
         self.avr.blocked_cm, self.avr.speed = 20, 10
