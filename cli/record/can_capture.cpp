@@ -122,7 +122,8 @@ int CanCapture::receive(std::size_t room) {
   // The kernel reports an error of the socket once, before the frames that wait in it: they still count. One
   // that does not go away ends it.
   for (int attempt = 0; attempt < most_errors; ++attempt) {
-    for (std::size_t i = 0; i < room; ++i) messages_[i].msg_hdr.msg_controllen = sizeof slots_[i].control;
+    for (mmsghdr& message : std::span{messages_}.first(room))
+      message.msg_hdr.msg_controllen = sizeof Slot::control;
     const int count =
         ::recvmmsg(socket_.get(), messages_.data(), static_cast<unsigned>(room), MSG_DONTWAIT, nullptr);
     if (count >= 0) return count;
