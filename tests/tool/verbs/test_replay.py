@@ -85,8 +85,13 @@ class Replaying(Case):
         sensors = [line for line in first if int(line[1][:3], 16) & 0x400]
         second, _ = self.replayed(self.path("first.log"), "--only", "sensors")
         self.assertEqual([frame for _, frame in second], [frame for _, frame in sensors])
-        shift = [there - here for (here, _), (there, _) in zip(sensors, second)]
-        self.assertLess(max(shift) - min(shift), 0.2)
+        times = [(here, there) for (here, _), (there, _) in zip(sensors, second)]
+        shift = min(there - here for here, there in times)
+        monotonic = time.monotonic() - time.time()
+        # By the clock that tells when this machine was held up: a frame that was due meanwhile comes behind that.
+        late = [there - here - shift - self.spare.held_up_between(here + shift + monotonic - 0.01, there + monotonic)
+                for here, there in times]
+        self.assertLess(max(late), 0.2)
 
     def test_times_are_kept_and_scaled(self):
         self.start_sim()
