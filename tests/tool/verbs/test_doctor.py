@@ -4,6 +4,7 @@ import json
 import os
 import signal
 import struct
+import time
 
 from harness import Case, main
 
@@ -17,6 +18,12 @@ class Doctor(Case):
 
     def what(self, report):
         return [(f["severity"], f["board"], f["what"]) for f in report["findings"]]
+
+    def test_it_listens_for_a_second(self):
+        self.start_sim()
+        begin = time.monotonic()
+        self.run_tool("doctor", "--patience", "300ms")
+        self.assertGreaterEqual(time.monotonic() - begin, 1)
 
     def test_a_robot_that_is_well(self):
         self.start_sim()
