@@ -451,6 +451,12 @@ class Encode(Case):
             out, err = self.run_tool("decode", path)
             self.assertEqual(len(out.splitlines()), 1, name)
             self.assertNotIn("not of the expected form", err, name)
+        # Another character that begins with the same byte is none, and stays.
+        with open(path := os.path.join(self.folder, "b.log"), "w", encoding="utf-8") as file:
+            file.write("\uff08(1.0) can0 608#000000000000\n(2.0) can0 608#000000000000\n")
+        out, err = self.run_tool("decode", path)
+        self.assertEqual(len(out.splitlines()), 1, out)
+        self.assertIn("line 1: not of the expected form", err)
         self.assertEqual(self.run_tool("encode", stdin="\ufeff" + lines)[0], log)
         self.assertIn("608", self.run_tool("send", "--stdin", "--dry-run", stdin="\ufeff608#00\n")[0])
 
