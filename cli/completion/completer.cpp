@@ -46,14 +46,14 @@ struct Line {
 
 Line read_line(Verb program, Session& session, const std::vector<std::string>& words) {
   Line line{program, {}, std::nullopt, false};
+  const auto heed = [&session](const Option& option, const std::string& value) {
+    if (option.is_named("--spec")) session.spec_files.push_back(value);
+    if (option.is_named("--bus")) session.bus_name = value;
+  };
   for (std::size_t i = 0; i + 1 < words.size(); ++i) {
     const std::string& word = words[i];
-    const auto heed = [&](bool spec, bool bus, const std::string& value) {
-      if (spec) session.spec_files.push_back(value);
-      if (bus) session.bus_name = value;
-    };
     if (line.waiting) {
-      heed(line.waiting->is_named("--spec"), line.waiting->is_named("--bus"), word);
+      heed(*line.waiting, word);
       line.waiting.reset();
     } else if (line.only_positionals || word.size() < 2 || word.front() != '-') {
       const Verb verb = line.positionals.empty() ? find_verb(line.verb, word) : Verb{};
@@ -64,8 +64,8 @@ Line read_line(Verb program, Session& session, const std::vector<std::string>& w
     } else if (word == "--") {
       line.only_positionals = true;
     } else if (const std::size_t equals = word.find('='); equals != std::string::npos) {
-      const std::string name = word.substr(0, equals);
-      heed(name == "--spec", name == "--bus", word.substr(equals + 1));
+      if (const auto option = find_option(line.verb, word.substr(0, equals)))
+        heed(*option, word.substr(equals + 1));
     } else if (const auto option = find_option(line.verb, word); option && wants_value(*option)) {
       line.waiting = option;
     }

@@ -39,9 +39,10 @@ class Asked(Operating):
         self.start_sim()
         switch = ("completion", "--words", "--", "operator", "switch")
         self.assertEqual(self.run_tool(*switch, "")[0], "words\n")
-        self.operate(document=GUARDED)
+        operator = self.operate(document=GUARDED)
         self.assertEqual(self.run_tool(*switch, "")[0], "words\nslow\tfrom driving\nhalted\tfrom driving\n")
         self.run_tool("operator", "switch", "slow")
+        self.event(operator, "switched")  # it may follow when the start is over
         self.assertEqual(self.run_tool(*switch, "d")[0], "words\ndriving\tfrom slow\n")
         self.assertEqual(self.run_tool(*switch, "--bus", "vcan7", "")[0], "words\n")
 
