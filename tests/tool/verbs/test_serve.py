@@ -801,24 +801,29 @@ print(lost, flush=True)
         server.communicate(timeout=60)
 
     def test_it_takes_little(self):
-        """At 100 frames/s, with a viewer that asks for all that the page asks for: 2 % of a core."""
+        """At 100 frames/s, with a viewer that asks for all that the page asks for: 2 % of a core, where `listen` takes 0.27 %.
+        A machine whose cores are shared takes twice as long for the same work: there it is seven times what `listen` takes beside it."""
         self.start_sim()
         self.run_tool("publish", "gyro", "10ms")
+        listener = self.start("listen", stdout=subprocess.DEVNULL)
         server, port, _ = self.serve()
         viewer = self.viewer(port)
         viewer.subscribe(*viewer.channels)
         viewer.message("/gyroscope")
         shares = []
+        ratio = None
+        listener_before, server_before = self.cpu(listener), self.cpu(server)
         for _ in range(4 if harness.sanitized() else 16):  # the least: on a busy machine the same work takes longer
             before, begin = self.cpu(server), time.monotonic()
             for _ in range(300):
                 viewer.message("/gyroscope")
             shares.append((self.cpu(server) - before) / (time.monotonic() - begin))
+            ratio = (self.cpu(server) - server_before) / (self.cpu(listener) - listener_before)
             if shares[-1] < 0.02:
                 break
-        print(f"serve at 100 frames/s: {min(shares) * 100:.1f} % of a core", file=sys.stderr)
-        if not harness.sanitized():
-            self.assertLess(min(shares), 0.02)
+        print(f"serve at 100 frames/s: {min(shares) * 100:.1f} % of a core, {ratio:.1f} times what listen takes", file=sys.stderr)
+        if not harness.sanitized() and min(shares) >= 0.02:
+            self.assertLess(ratio, 7)
 
     def test_a_hundred_viewers(self):
         self.start_sim("--frozen")
