@@ -6,6 +6,7 @@
 #include <exception>
 #include <fcntl.h>
 #include <new>
+#include <string_view>
 #include <system_error>
 #include <unistd.h>
 
@@ -21,45 +22,49 @@ using namespace ocm::cli;
 
 // In the order of --help.
 // clang-format off
-constexpr AddVerb verbs[] = {
-    add_list,
-    add_info,
-    add_analyse,
-    add_generate,
-    add_publish,
-    add_once,
-    add_stop,
-    add_drive,
-    add_travel,
-    add_behave,
-    add_led,
-    add_set,
-    add_send,
-    add_listen,
-    add_doctor,
-    add_record,
-    add_replay,
-    add_decode,
-    add_encode,
-    add_convert,
-    add_stats,
-    add_top,
-    add_serve,
-    add_plot,
-    add_run,
-    add_operate,
-    add_operator,
-    add_sim,
-    add_central,
-    add_robots,
-    add_goto,
-    add_calibrate,
-    add_pause,
-    add_unpause,
-    add_map,
-    add_line,
-    add_completion,
-    add_man,
+constexpr struct {
+  std::string_view name;
+  DeclareVerb declare;
+  Program::About about = Program::About::itself;
+} verbs[] = {
+    {"list", declare_list},
+    {"info", declare_info},
+    {"analyse", declare_analyse},
+    {"generate", declare_generate},
+    {"publish", declare_publish},
+    {"once", declare_once},
+    {"stop", declare_stop},
+    {"drive", declare_drive},
+    {"travel", declare_travel},
+    {"behave", declare_behave},
+    {"led", declare_led},
+    {"set", declare_set},
+    {"send", declare_send},
+    {"listen", declare_listen},
+    {"doctor", declare_doctor},
+    {"record", declare_record},
+    {"replay", declare_replay},
+    {"decode", declare_decode},
+    {"encode", declare_encode},
+    {"convert", declare_convert},
+    {"stats", declare_stats},
+    {"top", declare_top},
+    {"serve", declare_serve},
+    {"plot", declare_plot},
+    {"run", declare_run},
+    {"operate", declare_operate},
+    {"operator", declare_operator},
+    {"sim", declare_sim},
+    {"central", declare_central},
+    {"robots", declare_robots},
+    {"goto", declare_goto},
+    {"calibrate", declare_calibrate},
+    {"pause", declare_pause},
+    {"unpause", declare_unpause},
+    {"map", declare_map},
+    {"line", declare_line},
+    {"completion", declare_completion, Program::About::all_verbs},
+    {"man", declare_man, Program::About::all_verbs},
 };
 // clang-format on
 
@@ -100,7 +105,10 @@ int run(int argc, char** argv) {
   Session session;
   session.add_options(program.root());
   int exit_code = exit_success;
-  for (const AddVerb add : verbs) add(program.root(), session, exit_code);
+  for (const auto& [name, declare, about] : verbs)
+    program.add_verb(name, about, [&session, &exit_code, declare = declare](Verb verb) {
+      declare(verb, session, exit_code);
+    });
   switch (program.run(argc, argv)) {
     case Program::Outcome::done:
       return finish(exit_code);

@@ -68,9 +68,9 @@ void carry_out(Session& session, const Commanding& commanding, const client::Com
   refusals.leave_if_refused();
 }
 
-void add_command_verb(Verb app, Session& session, std::string_view name, std::string_view description,
-                      std::string_view group, std::string_view words_help, std::string_view examples) {
-  auto verb = app.add_verb(name, description, group, examples);
+void declare_command_verb(Verb verb, Session& session, std::string_view description, std::string_view group,
+                          std::string_view words_help, std::string_view examples) {
+  verb.describe(description, group, examples);
   const auto commanding = std::make_shared<Commanding>(verb, session, words_help);
   verb.callback([commanding, &session] { carry_out(session, *commanding, commanding->parse()); });
 }

@@ -57,7 +57,7 @@ void carry_out(Session& session, const Commanding& commanding, const client::Com
 void print_frames(const client::Command& command);
 
 /// A plain command verb: parse, carry out. For stop, led, set.
-void add_command_verb(Verb app, Session& session, std::string_view name, std::string_view description,
-                      std::string_view group, std::string_view words_help, std::string_view examples);
+void declare_command_verb(Verb verb, Session& session, std::string_view description, std::string_view group,
+                          std::string_view words_help, std::string_view examples);
 
 }  // namespace ocm::cli

@@ -157,11 +157,28 @@ struct Root : CLI::App {
   std::map<const CLI::Option*, Accepted> accepted;
   std::set<const CLI::Option*> given;     ///< by the environment or a config file
   std::set<const CLI::Option*> declined;  ///< by `false` there
+
+  struct Each {
+    std::string name;
+    Program::About about;
+    std::function<void(Verb)> declare;
+    CLI::App* app = nullptr;  ///< nullptr: it is not declared yet
+  };
+  std::vector<Each> verbs;  ///< in the order of the help
 };
 
 Root& root_of(CLI::App* app) {
   while (app->get_parent() != nullptr) app = app->get_parent();
   return static_cast<Root&>(*app);  // a Verb is of a Program, whose root is one
+}
+
+Verb declared(Root& root, Root::Each& verb) {
+  if (verb.app == nullptr) {
+    verb.app = root.add_subcommand(verb.name, "");
+    verb.app->fallthrough();
+    verb.declare(Verb{verb.app});
+  }
+  return Verb{verb.app};
 }
 
 Option declare(CLI::Option* option, CLI::App* app, Accepted accepted) {
@@ -516,13 +533,10 @@ Verb Verb::add_choice(const std::string& heading, const std::string& help) const
   return Verb{group};
 }
 
-Verb Verb::add_verb(std::string_view name, std::string_view description, std::string_view heading,
-                    std::string_view examples) const {
-  auto* verb = app_->add_subcommand(std::string{name}, std::string{description});
-  verb->group(std::string{heading});
-  verb->footer("Examples:\n" + std::string{examples});
-  verb->fallthrough();
-  return Verb{verb};
+void Verb::describe(std::string_view description, std::string_view heading, std::string_view examples) const {
+  app_->description(std::string{description});
+  app_->group(std::string{heading});
+  app_->footer("Examples:\n" + std::string{examples});
 }
 
 Verb Verb::add_inner_verb(const std::string& name, const std::string& description,
@@ -625,6 +639,7 @@ std::string Verb::path() const {
 }
 
 std::string Verb::help() const {
+  static_cast<void>(verbs());
   // Not App::help, which shows that of the verb that was called.
   return app_->get_formatter()->make_help(app_, "", CLI::AppFormatMode::Normal);
 }
@@ -636,12 +651,17 @@ std::vector<Option> Verb::options() const {
 }
 
 std::vector<Verb> Verb::verbs() const {
-  return handles(app_->get_subcommands([](const CLI::App* each) { return is_verb(each); }));
+  if (parent()) return handles(app_->get_subcommands([](const CLI::App* each) { return is_verb(each); }));
+  Root& root = root_of(app_);
+  std::vector<Verb> all;
+  for (Root::Each& each : root.verbs) all.push_back(declared(root, each));
+  return all;
 }
 
 std::vector<Verb> Verb::verbs_for_all() const {
-  return handles(app_->get_subcommands(
-      [](const CLI::App* each) { return is_verb(each) && !each->get_group().empty(); }));
+  auto shown = verbs();
+  std::erase_if(shown, [](Verb each) { return each.is_hidden(); });
+  return shown;
 }
 
 Verb Verb::called() const {
@@ -662,6 +682,31 @@ std::vector<std::string> Verb::left_over() const {
 
 // --- program -----------------------------------------------------------------------------------------------
 
+namespace {
+
+/// The verb of a command line, the last word of which is the first of `words`; nullptr: it has none, or what
+/// stands before it is no option of the program.
+Root::Each* verb_among(Root& root, const std::vector<std::string>& words) {
+  for (auto word = words.rbegin(); word != words.rend(); ++word) {
+    if (word->size() < 2 || word->front() != '-') {
+      const auto found = std::find_if(root.verbs.begin(), root.verbs.end(),
+                                      [&](const Root::Each& each) { return each.name == *word; });
+      return found == root.verbs.end() ? nullptr : &*found;
+    }
+    const std::string name = word->substr(0, word->find('='));
+    const CLI::Option* const option = find_option(root, name);
+    if (option == nullptr) return nullptr;
+    const int least = option->get_items_expected_min();
+    if (option->get_allow_extra_args() && least != option->get_items_expected_max()) return nullptr;
+    const int values = name == *word ? least : 0;
+    if (words.rend() - word <= values) return nullptr;
+    word += values;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
 Program::Program(const std::string& name, const std::string& description, const std::string& version,
                  const std::string& footer, std::string beginning)
     : beginning_(std::move(beginning)), app_(std::make_unique<Root>(description, name)) {
@@ -678,13 +723,23 @@ Verb Program::root() noexcept {
   return Verb{app_.get()};
 }
 
+void Program::add_verb(std::string_view name, About about, std::function<void(Verb)> declare) {
+  root_of(app_.get()).verbs.push_back({std::string{name}, about, std::move(declare)});
+}
+
 Program::Outcome Program::run(int argc, char** argv) {
   if (const auto misuse = empty_word({argv + std::min(argc, 1), argv + argc})) {
     complain({misuse->what, misuse->remedy});
     return Outcome::refused;
   }
+  auto words = words_of(argc, argv);
+  Root& all = root_of(app_.get());
+  if (Root::Each* const verb = verb_among(all, words); verb != nullptr && verb->about == About::itself)
+    declared(all, *verb);
+  else
+    static_cast<void>(root().verbs());  // for the help, or to say what is meant, too
   try {
-    app_->parse(words_of(argc, argv));
+    app_->parse(words);
     return Outcome::done;
   } catch (const CLI::Success& asked) {
     if (!root().called() && !root().left_over().empty()) {  // help on a verb that there is not

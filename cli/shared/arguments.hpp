@@ -121,9 +121,8 @@ class Verb {
   Option add_flag(const std::string& names, bool& value, const std::string& help) const;
   /// Options under a heading of their own, of which at most one may be given.
   Verb add_choice(const std::string& heading, const std::string& help) const;
-  /// With its heading in the list of verbs, and its examples below its options.
-  Verb add_verb(std::string_view name, std::string_view description, std::string_view heading,
-                std::string_view examples) const;
+  /// What the list of verbs says of it, below which heading, and the examples below its options.
+  void describe(std::string_view description, std::string_view heading, std::string_view examples) const;
   /// A verb of this verb.
   Verb add_inner_verb(const std::string& name, const std::string& description,
                       std::string_view examples) const;
@@ -175,6 +174,11 @@ class Program {
   Program& operator=(const Program&) = delete;
 
   [[nodiscard]] Verb root() noexcept;
+  /// What a verb speaks of: the manual speaks of all.
+  enum class About : bool { itself, all_verbs };
+  /// In the order of the help. `declare` says what the verb is and takes, when that is asked for: a command
+  /// line has one verb, and to declare all of them would be half of a start.
+  void add_verb(std::string_view name, About about, std::function<void(Verb)> declare);
 
   enum class Outcome { done, told, refused };  ///< told: --help or --version
   /// Reads the command line and runs the verb's callback. Prints help, and what is wrong.

@@ -79,14 +79,23 @@ void apply_environment(Verb verb) {
 }
 
 /// A variable that sets nothing is most often a misspelt one.
-void remark_unknown_environment(const std::vector<Settable>& settable) {
+void remark_unknown_environment(Verb program, const std::vector<Verb>& called) {
   constexpr std::string_view prefix = "AMIROCTL_";
+  const auto variable_of = [&](const std::string& key) {
+    return environment_name(key).substr(prefix.size());
+  };
   std::set<std::string> known{"CONFIG"};
-  for (const Settable& each : settable) known.insert(environment_name(each.key).substr(prefix.size()));
+  for (const Verb verb : called)
+    for (const Option& option : verb.options())
+      if (can_be_set(option))
+        for (const std::string& key : option.long_names()) known.insert(variable_of(key));
+  bool all_known = false;
   for (char** entry = environ; *entry != nullptr; ++entry) {
     const std::string_view variable{*entry};
     if (!variable.starts_with(prefix)) continue;
     const std::string name{variable.substr(prefix.size(), variable.find('=') - prefix.size())};
+    if (known.count(name) == 0 && !std::exchange(all_known, true))  // other verbs are declared for this only
+      for (const Settable& each : all_settable(program)) known.insert(variable_of(each.key));
     if (known.count(name) != 0) continue;
     const std::string_view near = words::nearest(name, known);
     remark(fmt::format("{}{} in the environment sets no option{}", prefix, name,
@@ -178,12 +187,13 @@ std::string default_config_file() {
 
 void apply_config(Verb program, const std::string& file) {
   const auto verbs = called(program);
-  const auto settable = all_settable(program);
-  remark_unknown_environment(settable);
+  remark_unknown_environment(program, verbs);
   for (const Verb each : verbs) apply_environment(each);
   const std::string path = file.empty() ? default_config_file() : file;
   if (path.empty()) return;
   ConfigFile config = parse_config(read_file(path, !file.empty()));
+  if (config.settings.empty() && config.empty_tables.empty() && config.problems.empty()) return;
+  const auto settable = all_settable(program);
   for (const EmptyTable& table : config.empty_tables) check_table(program, table, config.problems);
   for (const Setting& setting : config.settings) check_setting(program, setting, settable, config.problems);
   if (!config.problems.empty()) {

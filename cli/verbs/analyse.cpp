@@ -337,12 +337,12 @@ void add_trace(Verb outer, Session& session, int& exit_code) {
 
 }  // namespace
 
-void add_analyse(Verb app, Session& session, int& exit_code) {
-  auto verb = app.add_verb("analyse", "schedulability analysis of bus and tasks", look_group,
-                           "  amiroctl analyse bus --rates gyro=50ms ring=2ms@high\n"
-                           "  amiroctl analyse tasks di_wheel_drive\n"
-                           "  amiroctl analyse chain chain.csv --deadline 50ms\n"
-                           "  amiroctl analyse trace drive.log");
+void declare_analyse(Verb verb, Session& session, int& exit_code) {
+  verb.describe("schedulability analysis of bus and tasks", look_group,
+                "  amiroctl analyse bus --rates gyro=50ms ring=2ms@high\n"
+                "  amiroctl analyse tasks di_wheel_drive\n"
+                "  amiroctl analyse chain chain.csv --deadline 50ms\n"
+                "  amiroctl analyse trace drive.log");
   verb.alias("analyze");
   verb.require_verb();
   add_bus(verb, session, exit_code);

@@ -310,13 +310,12 @@ void behave(Session& session, const BehaveOptions& options, int& exit_code) {
 
 }  // namespace
 
-void add_behave(Verb app, Session& session, int& exit_code) {
-  auto verb = app.add_verb(
-      "behave", "let the boards follow a line, avoid obstacles or go to a wall by themselves", act_group,
-      "  amiroctl behave follow                     until Ctrl-C, at 0.1 m/s\n"
-      "  amiroctl behave avoid --speed 15cm/s --for 1min\n"
-      "  amiroctl behave home --distance 5cm        to the nearest wall, and stays there\n"
-      "  amiroctl behave none                       ends it, whichever program began it");
+void declare_behave(Verb verb, Session& session, int& exit_code) {
+  verb.describe("let the boards follow a line, avoid obstacles or go to a wall by themselves", act_group,
+                "  amiroctl behave follow                     until Ctrl-C, at 0.1 m/s\n"
+                "  amiroctl behave avoid --speed 15cm/s --for 1min\n"
+                "  amiroctl behave home --distance 5cm        to the nearest wall, and stays there\n"
+                "  amiroctl behave none                       ends it, whichever program began it");
   const auto options = std::make_shared<BehaveOptions>();
   verb.add_option("which", options->which, "what to do").type_name("follow|avoid|home|none").required();
   verb.add_option("--speed", options->speed, fmt::format("at most; default: {}", usual_speed)).type_name("V");

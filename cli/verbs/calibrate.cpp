@@ -155,11 +155,10 @@ void run(const CalibrateOptions& options, int& exit_code) {
 
 }  // namespace
 
-void add_calibrate(Verb app, Session&, int& exit_code) {
-  auto verb = app.add_verb("calibrate", "turn a mapper around once for its compass, and say how good it is",
-                           mapper_group,
-                           "  amiroctl calibrate AVR\n"
-                           "  amiroctl calibrate AVR --show    how good the compass is, without a turn");
+void declare_calibrate(Verb verb, Session&, int& exit_code) {
+  verb.describe("turn a mapper around once for its compass, and say how good it is", mapper_group,
+                "  amiroctl calibrate AVR\n"
+                "  amiroctl calibrate AVR --show    how good the compass is, without a turn");
   const auto options = std::make_shared<CalibrateOptions>();
   verb.add_option("robot", options->robot, "its name, address or index").required().type_name("ROBOT");
   verb.add_flag("--show", options->show, "ask what it knows; it does not turn");

@@ -130,9 +130,9 @@ void serve(Switchboard& board, ServerEnd& server) {
 
 }  // namespace
 
-void add_central(Verb app, Session&, int& exit_code) {
-  auto verb = app.add_verb(
-      "central", "this machine as the central of mappers on serial lines", mapper_group,
+void declare_central(Verb verb, Session&, int& exit_code) {
+  verb.describe(
+      "this machine as the central of mappers on serial lines", mapper_group,
       "  amiroctl central --robot AVR=/dev/ttyUSB0   type start, list, conn 0, {S,CON}\n"
       "  amiroctl central --pty                      for a server that opens a serial line\n"
       "  amiroctl sim --robots 2 --lines             simulated robots, each with a line of its own\n"

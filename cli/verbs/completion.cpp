@@ -96,8 +96,8 @@ end
 complete -c amiroctl -f -a '(__amiroctl_complete)'
 )sh";
 
-void print_words(Verb app, Session& session, const std::vector<std::string>& words) {
-  const Completion completion = complete(app, session, words);
+void print_words(Verb program, Session& session, const std::vector<std::string>& words) {
+  const Completion completion = complete(program, session, words);
   fmt::print("{}\n", completion.files ? "files" : "words");
   for (const auto& candidate : completion.candidates)
     fmt::print("{}{}{}\n", candidate.word, candidate.what.empty() ? "" : "\t", candidate.what);
@@ -118,9 +118,9 @@ void print_script(const std::vector<std::string>& shells) {
 
 }  // namespace
 
-void add_completion(Verb app, Session& session, int&) {
-  auto verb = app.add_verb(
-      "completion", "completion of commands, topics and options in a shell", help_group,
+void declare_completion(Verb verb, Session& session, int&) {
+  verb.describe(
+      "completion of commands, topics and options in a shell", help_group,
       "  source <(amiroctl completion bash)       for this bash; for good: put it into\n"
       "                                           ~/.local/share/bash-completion/completions/amiroctl\n"
       "  amiroctl completion zsh > ~/.zfunc/_amiroctl\n"
@@ -133,8 +133,8 @@ void add_completion(Verb app, Session& session, int&) {
   verb.add_option("shell", options->words, "the shell").type_name("bash|zsh|fish").in_usage("bash|zsh|fish");
   verb.add_flag("--words", options->ask,
                 "what the scripts ask: candidates for the last of the words behind --");
-  verb.callback([options, app, &session] {
-    options->ask ? print_words(app, session, options->words) : print_script(options->words);
+  verb.callback([options, program = verb.parent(), &session] {
+    options->ask ? print_words(program, session, options->words) : print_script(options->words);
   });
 }
 

@@ -86,8 +86,8 @@ std::string list_of_formats() {
 
 }  // namespace
 
-void add_convert(Verb app, Session& session, int& exit_code) {
-  auto verb = app.add_verb("convert", "a log in another format", log_group, list_of_formats());
+void declare_convert(Verb verb, Session& session, int& exit_code) {
+  verb.describe("a log in another format", log_group, list_of_formats());
   const auto options = std::make_shared<ConvertOptions>();
   verb.add_option("in", options->in, "the log to read; - for the standard input").type_name("IN").required();
   verb.add_option("out", options->out, "the log to write; - for the standard output")

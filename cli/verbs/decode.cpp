@@ -139,15 +139,14 @@ void decode(Session& session, const DecodeOptions& options, int& exit_code) {
 
 }  // namespace
 
-void add_decode(Verb app, Session& session, int& exit_code) {
-  auto verb =
-      app.add_verb("decode", "say what the frames of a log mean", log_group,
-                   "  amiroctl decode drive.log | jq -c .fields\n"
-                   "  amiroctl decode drive.pcapng --csv --field gyroscope.z --field odom.velocity.x\n"
-                   "  amiroctl --spec car.dbc decode drive.log --where 'Engine.Speed>3000'\n"
-                   "  amiroctl decode drive.log.zst --topic power --since 10s --until 1min --pretty\n"
-                   "  candump -L can0 | amiroctl decode --pretty\n"
-                   "  amiroctl decode drive.log | amiroctl encode    the log again, to the byte");
+void declare_decode(Verb verb, Session& session, int& exit_code) {
+  verb.describe("say what the frames of a log mean", log_group,
+                "  amiroctl decode drive.log | jq -c .fields\n"
+                "  amiroctl decode drive.pcapng --csv --field gyroscope.z --field odom.velocity.x\n"
+                "  amiroctl --spec car.dbc decode drive.log --where 'Engine.Speed>3000'\n"
+                "  amiroctl decode drive.log.zst --topic power --since 10s --until 1min --pretty\n"
+                "  candump -L can0 | amiroctl decode --pretty\n"
+                "  amiroctl decode drive.log | amiroctl encode    the log again, to the byte");
   const auto options = std::make_shared<DecodeOptions>();
   verb.add_option("files", options->files,
                   "logs of any format, one after another; default: - (standard input)")

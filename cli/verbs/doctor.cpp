@@ -330,10 +330,10 @@ void print_json(const Examination& examination, const std::vector<Finding>& find
 
 }  // namespace
 
-void add_doctor(Verb app, Session& session, int& exit_code) {
-  auto verb = app.add_verb("doctor", "check the robot's health and suggest fixes", watch_group,
-                           "  amiroctl doctor\n"
-                           "  amiroctl doctor --listen 10s --json | jq '.findings[]'");
+void declare_doctor(Verb verb, Session& session, int& exit_code) {
+  verb.describe("check the robot's health and suggest fixes", watch_group,
+                "  amiroctl doctor\n"
+                "  amiroctl doctor --listen 10s --json | jq '.findings[]'");
   const auto options = std::make_shared<DoctorOptions>();
   add_duration(verb, "--listen,--watch", options->listen, "how long to listen before asking")
       .formerly("--watch");

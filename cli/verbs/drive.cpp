@@ -12,15 +12,14 @@
 
 namespace ocm::cli {
 
-void add_drive(Verb app, Session& session, int& exit_code) {
-  auto verb =
-      app.add_verb("drive", "set the motors, and keep them going until Ctrl-C or --for", act_group,
-                   "  amiroctl drive 0.05m/s 0.2rad/s       until Ctrl-C, then zero\n"
-                   "  amiroctl drive 5cm/s -30deg/s --for 2s\n"
-                   "  amiroctl drive 0 30deg/s              turns on the spot; only zero needs no unit\n"
-                   "  amiroctl drive --keys                 while an arrow key is held; q quits\n"
-                   "  amiroctl drive --gamepad /dev/input/event5\n"
-                   "  amiroctl drive stop");
+void declare_drive(Verb verb, Session& session, int& exit_code) {
+  verb.describe("set the motors, and keep them going until Ctrl-C or --for", act_group,
+                "  amiroctl drive 0.05m/s 0.2rad/s       until Ctrl-C, then zero\n"
+                "  amiroctl drive 5cm/s -30deg/s --for 2s\n"
+                "  amiroctl drive 0 30deg/s              turns on the spot; only zero needs no unit\n"
+                "  amiroctl drive --keys                 while an arrow key is held; q quits\n"
+                "  amiroctl drive --gamepad /dev/input/event5\n"
+                "  amiroctl drive stop");
   struct Options {
     Options(Verb app, Session& s)
         : commanding(app, s, "forward velocity X, angular velocity Z (left is positive); stop: zero") {}

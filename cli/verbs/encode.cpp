@@ -63,9 +63,9 @@ void encode(Session& session, const EncodeOptions& options, int& exit_code) {
 
 }  // namespace
 
-void add_encode(Verb app, Session& session, int& exit_code) {
-  auto verb = app.add_verb(
-      "encode", "make a log of what decode or listen printed as JSON", log_group,
+void declare_encode(Verb verb, Session& session, int& exit_code) {
+  verb.describe(
+      "make a log of what decode or listen printed as JSON", log_group,
       "  amiroctl decode a.log | jq -c 'select(.topic==\"motors\")' | amiroctl encode > motors.log\n"
       "  amiroctl decode a.log | jq -c '.fields.x *= 2' | amiroctl encode -o faster.pcapng\n"
       "  echo '{\"topic\":\"motors\",\"fields\":{\"x\":0.05}}' | amiroctl encode");

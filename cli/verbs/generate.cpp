@@ -69,11 +69,11 @@ void generate_file(Session& session, const GenerateOptions& options) {
 
 }  // namespace
 
-void add_generate(Verb app, Session& session, int&) {
-  auto verb = app.add_verb("generate", "files for other programs, from the robot's spec", look_group,
-                           "  amiroctl generate dbc -o amiro.dbc\n"
-                           "  amiroctl generate wireshark -o ~/.local/lib/wireshark/plugins/amiro.lua\n"
-                           "  amiroctl --spec other.json generate c > other.h");
+void declare_generate(Verb verb, Session& session, int&) {
+  verb.describe("files for other programs, from the robot's spec", look_group,
+                "  amiroctl generate dbc -o amiro.dbc\n"
+                "  amiroctl generate wireshark -o ~/.local/lib/wireshark/plugins/amiro.lua\n"
+                "  amiroctl --spec other.json generate c > other.h");
   verb.footer(targets_help() + "\n" + verb.footer());
   const auto options = std::make_shared<GenerateOptions>();
   verb.add_option("target", options->target, generate::target_names()).required().type_name("TARGET");

@@ -192,12 +192,12 @@ void run(const GotoOptions& options, int& exit_code) {
 
 }  // namespace
 
-void add_goto(Verb app, Session&, int& exit_code) {
-  auto verb = app.add_verb("goto", "turn a mapper, then drive it a given distance", mapper_group,
-                           "  amiroctl goto AVR 90 50          to the left, then 50 cm\n"
-                           "  amiroctl goto AVR -45 0          turn to the right\n"
-                           "  amiroctl goto AVR 0 0            stop\n"
-                           "  amiroctl goto AVR 0 50 --no-wait");
+void declare_goto(Verb verb, Session&, int& exit_code) {
+  verb.describe("turn a mapper, then drive it a given distance", mapper_group,
+                "  amiroctl goto AVR 90 50          to the left, then 50 cm\n"
+                "  amiroctl goto AVR -45 0          turn to the right\n"
+                "  amiroctl goto AVR 0 0            stop\n"
+                "  amiroctl goto AVR 0 50 --no-wait");
   const auto options = std::make_shared<GotoOptions>();
   verb.add_option("robot", options->robot, "its name, address or index").required().type_name("ROBOT");
   verb.add_option("angle", options->angle, "degrees to the left of where it looks now")

@@ -198,11 +198,10 @@ void info(Session& session, const std::string& word) {
 
 }  // namespace
 
-void add_info(Verb app, Session& session, int&) {
-  auto verb = app.add_verb(
-      "info", "all about one topic: frames, fields, units, ranges, where the facts come from", look_group,
-      "  amiroctl info gyro\n"
-      "  amiroctl info motors");
+void declare_info(Verb verb, Session& session, int&) {
+  verb.describe("all about one topic: frames, fields, units, ranges, where the facts come from", look_group,
+                "  amiroctl info gyro\n"
+                "  amiroctl info motors");
   const auto topic = std::make_shared<std::string>();
   verb.add_option("topic", *topic, "name, alias or id").required().type_name("TOPIC");
   verb.callback([topic, &session] { info(session, *topic); });

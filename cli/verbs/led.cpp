@@ -3,12 +3,12 @@
 
 namespace ocm::cli {
 
-void add_led(Verb app, Session& session, int&) {
-  add_command_verb(app, session, "led", "light an LED, or all of them", act_group,
-                   "a colour is 100,50,120 or #643278 or a name",
-                   "  amiroctl led 1 red\n"
-                   "  amiroctl led 5 100,50,120\n"
-                   "  amiroctl led all off");
+void declare_led(Verb verb, Session& session, int&) {
+  declare_command_verb(verb, session, "light an LED, or all of them", act_group,
+                       "a colour is 100,50,120 or #643278 or a name",
+                       "  amiroctl led 1 red\n"
+                       "  amiroctl led 5 100,50,120\n"
+                       "  amiroctl led all off");
 }
 
 }  // namespace ocm::cli

@@ -307,13 +307,12 @@ void run_line(const LineOptions& options, int& exit_code) {
 
 }  // namespace
 
-void add_line(Verb app, Session&, int& exit_code) {
-  auto verb =
-      app.add_verb("line", "say what mappers said, as JSON", mapper_group,
-                   "  amiroctl line central.log | jq -c 'select(.name==\"AVR\") | .values'\n"
-                   "  amiroctl line --to-robot server.log\n"
-                   "  stty -F /dev/ttyUSB0 raw -echo 115200; amiroctl line /dev/ttyUSB0\n"
-                   "  amiroctl line --strict central.log > /dev/null    exit 1 when anything was damaged");
+void declare_line(Verb verb, Session&, int& exit_code) {
+  verb.describe("say what mappers said, as JSON", mapper_group,
+                "  amiroctl line central.log | jq -c 'select(.name==\"AVR\") | .values'\n"
+                "  amiroctl line --to-robot server.log\n"
+                "  stty -F /dev/ttyUSB0 raw -echo 115200; amiroctl line /dev/ttyUSB0\n"
+                "  amiroctl line --strict central.log > /dev/null    exit 1 when anything was damaged");
   const auto options = std::make_shared<LineOptions>();
   verb.add_option("file", options->file,
                   "bytes of a robot's line, or of a central with its prefixes; default: - (standard input)")

@@ -112,11 +112,11 @@ void list_table(const protocol::Catalogue& catalogue) {
 
 }  // namespace
 
-void add_list(Verb app, Session& session, int&) {
-  auto verb = app.add_verb("list", "the robot's topics", look_group,
-                           "  amiroctl list\n"
-                           "  amiroctl list --json | jq -r .topic\n"
-                           "  amiroctl --spec other.json list");
+void declare_list(Verb verb, Session& session, int&) {
+  verb.describe("the robot's topics", look_group,
+                "  amiroctl list\n"
+                "  amiroctl list --json | jq -r .topic\n"
+                "  amiroctl --spec other.json list");
   const auto json = std::make_shared<bool>(false);
   verb.add_flag("--json", *json, "an object a topic");
   verb.callback(

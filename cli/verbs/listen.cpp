@@ -106,15 +106,14 @@ void listen(Session& session, const ListenOptions& options, int& exit_code) {
 
 }  // namespace
 
-void add_listen(Verb app, Session& session, int& exit_code) {
-  auto verb = app.add_verb(
-      "listen", "show what the sensors say", watch_group,
-      "  amiroctl listen                        for a person on a terminal, JSON lines in a pipe\n"
-      "  amiroctl listen gyro odom --pretty\n"
-      "  amiroctl listen --json -n 10 | jq .fields\n"
-      "  amiroctl listen --raw > drive.log      a candump log\n"
-      "  amiroctl listen --where 'gyro.z>90'    only while it turns that fast\n"
-      "  amiroctl listen --strict --timeout 10s  exit 1 when anything was lost or unknown");
+void declare_listen(Verb verb, Session& session, int& exit_code) {
+  verb.describe("show what the sensors say", watch_group,
+                "  amiroctl listen                        for a person on a terminal, JSON lines in a pipe\n"
+                "  amiroctl listen gyro odom --pretty\n"
+                "  amiroctl listen --json -n 10 | jq .fields\n"
+                "  amiroctl listen --raw > drive.log      a candump log\n"
+                "  amiroctl listen --where 'gyro.z>90'    only while it turns that fast\n"
+                "  amiroctl listen --strict --timeout 10s  exit 1 when anything was lost or unknown");
   const auto options = std::make_shared<ListenOptions>();
   verb.add_option("topics", options->choice.topics, "only these; default: everything")
       .type_name("[TOPIC ...]");

@@ -105,11 +105,11 @@ void write_all(Verb root, const std::string& folder) {
 
 }  // namespace
 
-void add_man(Verb app, Session&, int&) {
-  auto verb = app.add_verb("man", "manual pages, as man(1) reads them", help_group,
-                           "  amiroctl man | man -l -\n"
-                           "  amiroctl man publish | man -l -\n"
-                           "  amiroctl man --all ~/.local/share/man/man1");
+void declare_man(Verb verb, Session&, int&) {
+  verb.describe("manual pages, as man(1) reads them", help_group,
+                "  amiroctl man | man -l -\n"
+                "  amiroctl man publish | man -l -\n"
+                "  amiroctl man --all ~/.local/share/man/man1");
   struct Options {
     std::string verb;
     std::string folder;
@@ -120,13 +120,13 @@ void add_man(Verb app, Session&, int&) {
   verb.add_option("--all", options->folder, "write every page into this folder")
       .type_name("FOLDER")
       .excludes(whose);
-  verb.callback([options, app] {
-    if (!options->folder.empty()) return write_all(app, options->folder);
-    Verb chosen = options->verb.empty() ? app : Verb{};
-    for (const Verb each : app.verbs_for_all())
+  verb.callback([options, program = verb.parent()] {
+    if (!options->folder.empty()) return write_all(program, options->folder);
+    Verb chosen = options->verb.empty() ? program : Verb{};
+    for (const Verb each : program.verbs_for_all())
       if (each.is_named(options->verb)) chosen = each;
-    if (!chosen) refuse_verb(app, options->verb);
-    fmt::print("{}", page_of(chosen, app));
+    if (!chosen) refuse_verb(program, options->verb);
+    fmt::print("{}", page_of(chosen, program));
   });
 }
 

@@ -116,14 +116,13 @@ void run(Session& session, const fleet::MapOptions& options, const MapPage& page
 
 }  // namespace
 
-void add_map(Verb app, Session& session, int& exit_code) {
-  auto verb =
-      app.add_verb("map", "let mappers explore, and draw a map of what they see", mapper_group,
-                   "  amiroctl map room.svg\n"
-                   "  amiroctl map room.png room.pgm --robots AVR --duration 5min\n"
-                   "  amiroctl map room.svg --start AVR=0.4,0.4,0 --start Arduino=2,1.4,180\n"
-                   "  amiroctl map room.svg --live               in a browser, too, while it grows\n"
-                   "  amiroctl map room.svg --world labyrinth    drawn over the true walls, and compared");
+void declare_map(Verb verb, Session& session, int& exit_code) {
+  verb.describe("let mappers explore, and draw a map of what they see", mapper_group,
+                "  amiroctl map room.svg\n"
+                "  amiroctl map room.png room.pgm --robots AVR --duration 5min\n"
+                "  amiroctl map room.svg --start AVR=0.4,0.4,0 --start Arduino=2,1.4,180\n"
+                "  amiroctl map room.svg --live               in a browser, too, while it grows\n"
+                "  amiroctl map room.svg --world labyrinth    drawn over the true walls, and compared");
   const auto options = std::make_shared<fleet::MapOptions>();
   verb.add_option("file", options->files, ".svg, .png, .pdf; .pgm with a .yaml beside it for ROS")
       .required()

@@ -126,13 +126,12 @@ int operate_file(const OperateOptions& options, Session& session) {
 
 }  // namespace
 
-void add_operate(Verb app, Session& session, int& exit_code) {
-  auto verb = app.add_verb(
-      "operate", "watch the robot and switch its configurations, within proved bounds", act_group,
-      "  amiroctl operate guard.operator.json           until Ctrl-C, then all is at rest\n"
-      "  amiroctl operate guard.operator.json --check   what is proved of it\n"
-      "  amiroctl operate guard.operator.json --check --svg guard.svg\n"
-      "  amiroctl operate guard.operator.json --black-box /var/log/ocm --json");
+void declare_operate(Verb verb, Session& session, int& exit_code) {
+  verb.describe("watch the robot and switch its configurations, within proved bounds", act_group,
+                "  amiroctl operate guard.operator.json           until Ctrl-C, then all is at rest\n"
+                "  amiroctl operate guard.operator.json --check   what is proved of it\n"
+                "  amiroctl operate guard.operator.json --check --svg guard.svg\n"
+                "  amiroctl operate guard.operator.json --black-box /var/log/ocm --json");
   const auto options = std::make_shared<OperateOptions>();
   verb.add_option("FILE", options->file, "an operator, JSON: configurations, monitors and transitions")
       .required();

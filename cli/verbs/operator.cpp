@@ -36,13 +36,12 @@ void add_question(Verb verb, Session& session, const std::string& name, const st
 
 }  // namespace
 
-void add_operator(Verb app, Session& session, int&) {
-  auto verb =
-      app.add_verb("operator", "ask the operator that runs on this bus, or tell it what to do", act_group,
-                   "  amiroctl operator status\n"
-                   "  amiroctl operator why              the last changes, and what leads on\n"
-                   "  amiroctl operator switch driving   where a transition on request leads there\n"
-                   "  amiroctl operator hold             until resume it leaves for the fall-back only");
+void declare_operator(Verb verb, Session& session, int&) {
+  verb.describe("ask the operator that runs on this bus, or tell it what to do", act_group,
+                "  amiroctl operator status\n"
+                "  amiroctl operator why              the last changes, and what leads on\n"
+                "  amiroctl operator switch driving   where a transition on request leads there\n"
+                "  amiroctl operator hold             until resume it leaves for the fall-back only");
   verb.require_verb();
   add_question(verb, session, "status", "the configuration, its streams and monitors",
                "  amiroctl operator status\n"

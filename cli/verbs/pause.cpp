@@ -34,33 +34,33 @@ void run(std::string_view verb, const PauseOptions& options, bool paused, int& e
   }
 }
 
-void add(Verb app, std::string_view name, std::string_view description, std::string_view examples,
-         bool paused, int& exit_code) {
-  auto verb = app.add_verb(name, description, mapper_group, examples);
+void declare(Verb verb, std::string_view description, std::string_view examples, bool paused,
+             int& exit_code) {
+  verb.describe(description, mapper_group, examples);
   const auto options = std::make_shared<PauseOptions>();
   verb.add_option("robot", options->robots, "names, addresses or indexes; all: each of them")
       .required()
       .type_name("ROBOT ...");
   fleet::add_line_options(verb, options->line);
   verb.callback(
-      [options, paused, word = std::string{name}, &exit_code] { run(word, *options, paused, exit_code); });
+      [options, paused, name = verb.name(), &exit_code] { run(name, *options, paused, exit_code); });
 }
 
 }  // namespace
 
-void add_pause(Verb app, Session&, int& exit_code) {
-  add(app, "pause", "hold a mapper's tower and its updates",
-      "  amiroctl pause AVR\n"
-      "  amiroctl pause all\n"
-      "  amiroctl pause AVR && amiroctl goto AVR 0 50   it drives all the same",
-      true, exit_code);
+void declare_pause(Verb verb, Session&, int& exit_code) {
+  declare(verb, "hold a mapper's tower and its updates",
+          "  amiroctl pause AVR\n"
+          "  amiroctl pause all\n"
+          "  amiroctl pause AVR && amiroctl goto AVR 0 50   it drives all the same",
+          true, exit_code);
 }
 
-void add_unpause(Verb app, Session&, int& exit_code) {
-  add(app, "unpause", "let a mapper's tower and its updates go on",
-      "  amiroctl unpause AVR\n"
-      "  amiroctl unpause all",
-      false, exit_code);
+void declare_unpause(Verb verb, Session&, int& exit_code) {
+  declare(verb, "let a mapper's tower and its updates go on",
+          "  amiroctl unpause AVR\n"
+          "  amiroctl unpause all",
+          false, exit_code);
 }
 
 }  // namespace ocm::cli

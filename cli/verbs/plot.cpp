@@ -229,13 +229,13 @@ void run(Verb verb, Session& session, const PlotOptions& options, int& exit_code
 
 }  // namespace
 
-void add_plot(Verb app, Session& session, int& exit_code) {
-  auto verb = app.add_verb("plot", "draw fields over time, or one against another", log_group,
-                           "  amiroctl plot drive.log gyroscope.z -o turn.png\n"
-                           "  amiroctl plot drive.log 'gyro.*' odometry.velocity   a panel for each unit\n"
-                           "  amiroctl plot drive.log odometry.x:odometry.y       where it drove\n"
-                           "  amiroctl plot live gyro.z --duration 10s\n"
-                           "  amiroctl plot --live gyro.z                         in a browser");
+void declare_plot(Verb verb, Session& session, int& exit_code) {
+  verb.describe("draw fields over time, or one against another", log_group,
+                "  amiroctl plot drive.log gyroscope.z -o turn.png\n"
+                "  amiroctl plot drive.log 'gyro.*' odometry.velocity   a panel for each unit\n"
+                "  amiroctl plot drive.log odometry.x:odometry.y       where it drove\n"
+                "  amiroctl plot live gyro.z --duration 10s\n"
+                "  amiroctl plot --live gyro.z                         in a browser");
   const auto options = std::make_shared<PlotOptions>();
   verb.add_option("words", options->words,
                   "logs, any format; none, or live: the bus. Fields: gyroscope.z, 'gyro.*', "

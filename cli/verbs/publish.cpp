@@ -3,9 +3,9 @@
 
 namespace ocm::cli {
 
-void add_publish(Verb app, Session& session, int&) {
-  auto verb = app.add_verb(
-      "publish", "ask a sensor for samples at a period", ask_group,
+void declare_publish(Verb verb, Session& session, int&) {
+  verb.describe(
+      "ask a sensor for samples at a period", ask_group,
       "  amiroctl publish gyro 500ms\n"
       "  amiroctl publish ring 1s --priority low\n"
       "  amiroctl publish mag 900us --dry-run     prints 205#01840302\n"

@@ -252,14 +252,13 @@ void run_record(Session& session, const RecordOptions& options, int& exit_code) 
 
 }  // namespace
 
-void add_record(Verb app, Session& session, int& exit_code) {
-  auto verb =
-      app.add_verb("record", "write what happens on the bus to a file", log_group,
-                   "  amiroctl record                        amiro-2026-11-21_163000.log, as candump -l\n"
-                   "  amiroctl record -o drive.pcapng        for Wireshark\n"
-                   "  amiroctl record -o drive.log.zst gyro odom --duration 10min\n"
-                   "  amiroctl record --split 100MB --ring 10  a black box of 1 GB\n"
-                   "  amiroctl --bus can0,can1 record -o both.pcapng");
+void declare_record(Verb verb, Session& session, int& exit_code) {
+  verb.describe("write what happens on the bus to a file", log_group,
+                "  amiroctl record                        amiro-2026-11-21_163000.log, as candump -l\n"
+                "  amiroctl record -o drive.pcapng        for Wireshark\n"
+                "  amiroctl record -o drive.log.zst gyro odom --duration 10min\n"
+                "  amiroctl record --split 100MB --ring 10  a black box of 1 GB\n"
+                "  amiroctl --bus can0,can1 record -o both.pcapng");
   const auto options = std::make_shared<RecordOptions>();
   verb.add_option("topics", options->topics, "only these; default: everything, error frames too")
       .type_name("[TOPIC ...]");

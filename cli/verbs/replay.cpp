@@ -334,13 +334,13 @@ void stand_in(Session& session, const ReplayOptions& options, int& exit_code) {
 
 }  // namespace
 
-void add_replay(Verb app, Session& session, int& exit_code) {
-  auto verb = app.add_verb("replay", "send what was recorded, each frame at its time", log_group,
-                           "  amiroctl replay drive.log\n"
-                           "  amiroctl replay drive.pcapng --speed 10 gyro odom\n"
-                           "  amiroctl replay drive.log --since 1min --until 90s --loop\n"
-                           "  amiroctl replay both.pcapng --interface can0=vcan0 --interface can1=vcan1\n"
-                           "  amiroctl replay drive.log --on-command     a robot that is a log");
+void declare_replay(Verb verb, Session& session, int& exit_code) {
+  verb.describe("send what was recorded, each frame at its time", log_group,
+                "  amiroctl replay drive.log\n"
+                "  amiroctl replay drive.pcapng --speed 10 gyro odom\n"
+                "  amiroctl replay drive.log --since 1min --until 90s --loop\n"
+                "  amiroctl replay both.pcapng --interface can0=vcan0 --interface can1=vcan1\n"
+                "  amiroctl replay drive.log --on-command     a robot that is a log");
   const auto options = std::make_shared<ReplayOptions>();
   verb.add_option("file", options->file, "a log in any format, packed or not; - for standard input")
       .required()

@@ -63,13 +63,12 @@ void run(const RobotsOptions& options, int& exit_code) {
 
 }  // namespace
 
-void add_robots(Verb app, Session&, int& exit_code) {
-  auto verb = app.add_verb("robots", "mappers behind a central: where they are, and how their links are",
-                           mapper_group,
-                           "  amiroctl robots\n"
-                           "  amiroctl robots --json | jq -r .robot\n"
-                           "  amiroctl robots --list                     without a link to any of them\n"
-                           "  amiroctl robots --central /dev/ttyACM0");
+void declare_robots(Verb verb, Session&, int& exit_code) {
+  verb.describe("mappers behind a central: where they are, and how their links are", mapper_group,
+                "  amiroctl robots\n"
+                "  amiroctl robots --json | jq -r .robot\n"
+                "  amiroctl robots --list                     without a link to any of them\n"
+                "  amiroctl robots --central /dev/ttyACM0");
   const auto options = std::make_shared<RobotsOptions>();
   verb.add_flag("--json", options->json, "an object a robot");
   verb.add_flag("--list", options->list, "those that advertise; connect to none");

@@ -310,11 +310,11 @@ void run(Session& session, const RunOptions& options, int& exit_code) {
 
 }  // namespace
 
-void add_run(Verb app, Session& session, int& exit_code) {
-  auto verb = app.add_verb("run", "carry out a script, each line at its time", play_group,
-                           "  amiroctl run examples/standalone.script --show\n"
-                           "  amiroctl run tour.script --speed 10\n"
-                           "  echo '0s drive 5cm/s --for 1s' | amiroctl run -");
+void declare_run(Verb verb, Session& session, int& exit_code) {
+  verb.describe("carry out a script, each line at its time", play_group,
+                "  amiroctl run examples/standalone.script --show\n"
+                "  amiroctl run tour.script --speed 10\n"
+                "  echo '0s drive 5cm/s --for 1s' | amiroctl run -");
   const auto options = std::make_shared<RunOptions>();
   verb.add_option("script", options->file, "file, or - for standard input")
       .required()

@@ -95,14 +95,14 @@ void send_lines(Session& session, const SendOptions& options, bool dry_run, int&
 
 }  // namespace
 
-void add_send(Verb app, Session& session, int& exit_code) {
-  auto verb = app.add_verb("send", "send a frame as it is, or frames from the standard input", act_group,
-                           "  amiroctl send 205#01840302        magnetometer every 900us, as in the thesis\n"
-                           "  amiroctl send 1F334455#DEADBEEF   extended identifier\n"
-                           "  amiroctl send 123#R               remote frame\n"
-                           "  amiroctl send 123##1DEAD          CAN FD, data at the higher bit rate\n"
-                           "  amiroctl --bus can0 listen --json | amiroctl --bus can1 send --stdin\n"
-                           "  amiroctl decode drive.log --topic motors | amiroctl send --stdin --timed");
+void declare_send(Verb verb, Session& session, int& exit_code) {
+  verb.describe("send a frame as it is, or frames from the standard input", act_group,
+                "  amiroctl send 205#01840302        magnetometer every 900us, as in the thesis\n"
+                "  amiroctl send 1F334455#DEADBEEF   extended identifier\n"
+                "  amiroctl send 123#R               remote frame\n"
+                "  amiroctl send 123##1DEAD          CAN FD, data at the higher bit rate\n"
+                "  amiroctl --bus can0 listen --json | amiroctl --bus can1 send --stdin\n"
+                "  amiroctl decode drive.log --topic motors | amiroctl send --stdin --timed");
   const auto commanding =
       std::make_shared<Commanding>(verb, session, "frame in candump notation", Commanding::Sends::raw_frames);
   const auto options = std::make_shared<SendOptions>();

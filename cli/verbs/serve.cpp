@@ -125,16 +125,15 @@ void serve_given(Verb verb, Session& session, GivenToServe& given, int& exit_cod
 
 }  // namespace
 
-void add_serve(Verb app, Session& session, int& exit_code) {
-  auto verb =
-      app.add_verb("serve", "bus and robot in a browser, live or from a log", watch_group,
-                   "  amiroctl serve                     prints the address to open\n"
-                   "  amiroctl serve --allow-commands    with buttons and keys to drive\n"
-                   "  amiroctl serve drive.log           played, with a bar to wind it\n"
-                   "  amiroctl serve robots              mappers behind a central, and their map\n"
-                   "  amiroctl serve room.line           a drive of mappers that --record has written\n"
-                   "  amiroctl serve live robots         both\n"
-                   "  amiroctl serve --spec car.dbc");
+void declare_serve(Verb verb, Session& session, int& exit_code) {
+  verb.describe("bus and robot in a browser, live or from a log", watch_group,
+                "  amiroctl serve                     prints the address to open\n"
+                "  amiroctl serve --allow-commands    with buttons and keys to drive\n"
+                "  amiroctl serve drive.log           played, with a bar to wind it\n"
+                "  amiroctl serve robots              mappers behind a central, and their map\n"
+                "  amiroctl serve room.line           a drive of mappers that --record has written\n"
+                "  amiroctl serve live robots         both\n"
+                "  amiroctl serve --spec car.dbc");
   const auto given = std::make_shared<GivenToServe>();
   serve::ServeOptions& options = given->options;
   verb.add_option("words", given->words,

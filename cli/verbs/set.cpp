@@ -9,11 +9,11 @@
 
 namespace ocm::cli {
 
-void add_set(Verb app, Session& session, int& exit_code) {
-  auto verb = app.add_verb("set", "set an actuator, or send a message, field by field", act_group,
-                           "  amiroctl set motors x=0.05m/s z=-30deg/s\n"
-                           "  amiroctl set led_3 red=255 blue=40\n"
-                           "  amiroctl --spec car.dbc set Engine rpm=2500 gear=third --every 10ms --for 5s");
+void declare_set(Verb verb, Session& session, int& exit_code) {
+  verb.describe("set an actuator, or send a message, field by field", act_group,
+                "  amiroctl set motors x=0.05m/s z=-30deg/s\n"
+                "  amiroctl set led_3 red=255 blue=40\n"
+                "  amiroctl --spec car.dbc set Engine rpm=2500 gear=third --every 10ms --for 5s");
   const auto commanding = std::make_shared<Commanding>(verb, session,
                                                        "an actuator's field is zero where it is not given, a "
                                                        "message's at its start value; units as in the spec");

@@ -181,20 +181,19 @@ void refuse_page_options(Verb verb, const simulate::ShowOptions& show, bool line
 
 }  // namespace
 
-void add_sim(Verb app, Session& session, int& exit_code) {
-  auto verb = app.add_verb(
-      "sim", "a simulated robot, or a spec's messages, on a virtual bus or a CAN interface", play_group,
-      "  amiroctl sim                       a virtual bus for this user, as --bus sim\n"
-      "  amiroctl sim --bus vcan0           the three boards on a CAN interface\n"
-      "  amiroctl sim --seed 7 --speed 10\n"
-      "  amiroctl sim --without light_ring  a board that is switched off\n"
-      "  amiroctl sim --bus-errors 20       interference: 20 broken bits a second\n"
-      "  amiroctl sim --boards qemu         the boards' firmware, emulated\n"
-      "  amiroctl sim --spec car.dbc        a bus with the messages of a DBC file\n"
-      "  amiroctl sim --robots 2            mappers in a room, and their central\n"
-      "  amiroctl sim --world labyrinth --radio-loss 0.1\n"
-      "  amiroctl sim --show                in a browser, too; prints the address\n"
-      "  amiroctl sim --show=text           drawn on this terminal while it runs");
+void declare_sim(Verb verb, Session& session, int& exit_code) {
+  verb.describe("a simulated robot, or a spec's messages, on a virtual bus or a CAN interface", play_group,
+                "  amiroctl sim                       a virtual bus for this user, as --bus sim\n"
+                "  amiroctl sim --bus vcan0           the three boards on a CAN interface\n"
+                "  amiroctl sim --seed 7 --speed 10\n"
+                "  amiroctl sim --without light_ring  a board that is switched off\n"
+                "  amiroctl sim --bus-errors 20       interference: 20 broken bits a second\n"
+                "  amiroctl sim --boards qemu         the boards' firmware, emulated\n"
+                "  amiroctl sim --spec car.dbc        a bus with the messages of a DBC file\n"
+                "  amiroctl sim --robots 2            mappers in a room, and their central\n"
+                "  amiroctl sim --world labyrinth --radio-loss 0.1\n"
+                "  amiroctl sim --show                in a browser, too; prints the address\n"
+                "  amiroctl sim --show=text           drawn on this terminal while it runs");
   const auto options = std::make_shared<sim::AmiroOptions>();
   verb.add_option("--seed", options->world.seed, "of all noise; equal seeds give equal robots")
       .type_name("N");

@@ -174,13 +174,12 @@ void run(Session& session, const StatsOptions& options, int& exit_code) {
 
 }  // namespace
 
-void add_stats(Verb app, Session& session, int& exit_code) {
-  auto verb =
-      app.add_verb("stats", "rates, jitter, gaps and losses of topics, and the load of the bus", log_group,
-                   "  amiroctl stats                          the bus, a table that is renewed every second\n"
-                   "  amiroctl stats gyro --duration 10s\n"
-                   "  amiroctl stats drive.log --json | jq '.buses[0].topics'\n"
-                   "  amiroctl stats drive.log --assert 'gyro.rate>1.9' --assert 'bus.load<40%'");
+void declare_stats(Verb verb, Session& session, int& exit_code) {
+  verb.describe("rates, jitter, gaps and losses of topics, and the load of the bus", log_group,
+                "  amiroctl stats                          the bus, a table that is renewed every second\n"
+                "  amiroctl stats gyro --duration 10s\n"
+                "  amiroctl stats drive.log --json | jq '.buses[0].topics'\n"
+                "  amiroctl stats drive.log --assert 'gyro.rate>1.9' --assert 'bus.load<40%'");
   verb.alias("hz");
   const auto options = std::make_shared<StatsOptions>();
   verb.add_option("words", options->words,

@@ -3,12 +3,12 @@
 
 namespace ocm::cli {
 
-void add_stop(Verb app, Session& session, int&) {
-  add_command_verb(app, session, "stop", "stop a topic, or the whole robot: motors first, then every sensor",
-                   ask_group, "topic; nothing or all: everything",
-                   "  amiroctl stop                     motors to zero, then every sensor\n"
-                   "  amiroctl stop gyro                the gyroscope only\n"
-                   "  amiroctl stop motors --priority urgent");
+void declare_stop(Verb verb, Session& session, int&) {
+  declare_command_verb(verb, session, "stop a topic, or the whole robot: motors first, then every sensor",
+                       ask_group, "topic; nothing or all: everything",
+                       "  amiroctl stop                     motors to zero, then every sensor\n"
+                       "  amiroctl stop gyro                the gyroscope only\n"
+                       "  amiroctl stop motors --priority urgent");
 }
 
 }  // namespace ocm::cli

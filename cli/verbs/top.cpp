@@ -52,13 +52,12 @@ void run(Session& session, Given& given, int& exit_code) {
 
 }  // namespace
 
-void add_top(Verb app, Session& session, int& exit_code) {
-  auto verb =
-      app.add_verb("top", "the bus as a table that changes while you look, live or from a log", watch_group,
-                   "  amiroctl top                       all that is on the bus; ? shows the keys, q quits\n"
-                   "  amiroctl top gyro odom\n"
-                   "  amiroctl top drive.log             played, with a bar to wind it\n"
-                   "  amiroctl top --spec car.dbc --bitrate 500k");
+void declare_top(Verb verb, Session& session, int& exit_code) {
+  verb.describe("the bus as a table that changes while you look, live or from a log", watch_group,
+                "  amiroctl top                       all that is on the bus; ? shows the keys, q quits\n"
+                "  amiroctl top gyro odom\n"
+                "  amiroctl top drive.log             played, with a bar to wind it\n"
+                "  amiroctl top --spec car.dbc --bitrate 500k");
   const auto given = std::make_shared<Given>();
   verb.add_option("words", given->words,
                   "a log, any format; none, or live: the bus. Topics to show; default: all")

@@ -245,11 +245,11 @@ void travel(Session& session, const TravelOptions& options, int& exit_code) {
 
 }  // namespace
 
-void add_travel(Verb app, Session& session, int& exit_code) {
-  auto verb = app.add_verb("travel", "drive a distance, turn an angle, and say where that ended", act_group,
-                           "  amiroctl travel 30cm                      ahead, at 0.1 m/s\n"
-                           "  amiroctl travel -0.3m --turn 90deg        back, then turns to the left\n"
-                           "  amiroctl travel --turn -90deg --speed 5cm/s");
+void declare_travel(Verb verb, Session& session, int& exit_code) {
+  verb.describe("drive a distance, turn an angle, and say where that ended", act_group,
+                "  amiroctl travel 30cm                      ahead, at 0.1 m/s\n"
+                "  amiroctl travel -0.3m --turn 90deg        back, then turns to the left\n"
+                "  amiroctl travel --turn -90deg --speed 5cm/s");
   const auto options = std::make_shared<TravelOptions>();
   verb.add_option("distance", options->distance, "how far ahead; negative: back").type_name("[DISTANCE]");
   verb.add_option("--turn", options->turn, "then turns so far on the spot; to the left is positive")

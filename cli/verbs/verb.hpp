@@ -7,7 +7,8 @@
 
 namespace ocm::cli {
 
-/// `exit_code` is what the verb leaves behind when it ran to its end.
-using AddVerb = void (*)(Verb app, Session& session, int& exit_code);
+/// Says what the verb is, what it takes and what it does. `exit_code` is what it leaves behind when it ran to
+/// its end.
+using DeclareVerb = void (*)(Verb verb, Session& session, int& exit_code);
 
 }  // namespace ocm::cli
