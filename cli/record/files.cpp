@@ -182,6 +182,8 @@ bool Files::append(std::span<const log::Entry> entries, const log::Interfaces& i
   recorded_.resize(std::max(recorded_.size(), interfaces.size()));
   for (const auto& entry : entries) ++recorded_[entry.interface].received;
   entries_ += entries.size();
+  // What is written to a file that was emptied makes it as long as it should be.
+  if (!is_in_place()) return false;
   if (file_->write(entries, interfaces)) return true;
   return failed(file_->failure());
 }
@@ -189,6 +191,7 @@ bool Files::append(std::span<const log::Entry> entries, const log::Interfaces& i
 bool Files::flush() {
   // A file of a ring is empty up to its first frame, whatever its format begins with.
   if (options_.ring != 0 && entries_ == 0) return is_in_place();
+  if (!is_in_place()) return false;
   if (!file_->flush(options_.sync)) return failed(file_->failure());
   delete_oldest();
   return is_in_place();
@@ -226,7 +229,8 @@ bool Files::finish(Next next) {
                                        [](const log::Recorded& recorded) { return recorded.dropped != 0; });
   if (entries_ == 0 && any_dropped) static_cast<void>(file_->write({}, *interfaces_));
   // finish whatever happens: it closes the file. What it writes then must be on the disk, too.
-  const bool told = file_->recorded(recorded_) && file_->flush(options_.sync) && is_in_place();
+  const bool told =
+      is_in_place() && file_->recorded(recorded_) && file_->flush(options_.sync) && is_in_place();
   const bool done = file_->finish() && told;
   if (done && (entries_ != 0 || any_dropped))
     delete_oldest();

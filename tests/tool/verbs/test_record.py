@@ -352,6 +352,20 @@ class Recording(Case):
         self.assertEqual(recorder.returncode, 1, err)
         self.assertIn("a.log was emptied by another program while it was recorded", err)
 
+    def test_a_file_that_is_emptied_while_frames_come_is_an_error(self):
+        self.start_sim()
+        for name in ("a.log", "a.pcapng", "a.log.gz"):
+            recorder = self.record("-o", name)
+            self.send_numbered(10)
+            waiting.until(lambda name=name: os.path.getsize(self.path(name)) > 0, "the first frames are in the file")
+            recorder.send_signal(signal.SIGSTOP)
+            os.truncate(self.path(name), 0)
+            self.send_numbered(10)  # they are written before the file is looked at again
+            recorder.send_signal(signal.SIGCONT)
+            _, err = recorder.communicate(timeout=60)
+            self.assertEqual(recorder.returncode, 1, err)
+            self.assertIn(f"{name} was emptied by another program while it was recorded", err)
+
     def test_a_ring_that_is_recorded_to_is_not_joined(self):
         self.start_sim()
         recorder = self.record("-o", "bb.log", "--split", "1h", "--ring", "2")
