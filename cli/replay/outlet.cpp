@@ -39,24 +39,32 @@ Outlet::Sent Outlet::send(const log::Entry& entry, base::Time latest) {
     return Sent::yes;
   }
   if (!is_rest(*frame)) {
-    if (!outgoing_.all_left(client::longest_without_set_point)) {
-      rest_if_it_is_taken();
-      outgoing_.expect_all_left({});
-    }
+    if (!outgoing_.all_left(client::longest_without_set_point)) leave_at_rest();
     if (Clock::now().time_since_epoch() > latest.time_since_epoch()) return Sent::late;
     outgoing_.otherwise_after_the_next(still_moving);
   }
   outgoing_.send(*frame);
   set_point_ = *frame;
   behind_ = 0;
+  sent_at_ = Clock::now();
+  moves_later_ = !is_rest(*frame);
   return Sent::yes;
 }
 
-void Outlet::rest_if_it_is_taken() {
-  if (is_rest(set_point_)) return;
-  set_point_.data = {};
-  behind_ = 0;
-  static_cast<void>(bus_->send(set_point_));
+void Outlet::expect_motion_left() {
+  if (!moves_later_ || Clock::now() - sent_at_ < client::longest_without_set_point) return;
+  const auto delivery = bus_->delivery();
+  moves_later_ = false;
+  if (delivery.known && delivery.pending > behind_) leave_at_rest();
+}
+
+void Outlet::leave_at_rest() {
+  if (!is_rest(set_point_)) {
+    set_point_.data = {};
+    behind_ = 0;
+    static_cast<void>(bus_->send(set_point_));
+  }
+  outgoing_.expect_all_left({});
 }
 
 void Outlet::expect_all_left() {

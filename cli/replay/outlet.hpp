@@ -34,6 +34,10 @@ class Outlet {
   /// not sent after `latest`.
   Sent send(const log::Entry& entry, base::Time latest);
 
+  /// Leaves as `send` does, with zero behind what waits, where the set point of motion that came last has not
+  /// left for so long. For the time up to the next frame; waits for nothing.
+  void expect_motion_left();
+
   /// Whether motors run, or a board does something by itself, because of the frames.
   [[nodiscard]] bool commands() const { return !is_rest(set_point_) || !behaviours_.all().empty(); }
 
@@ -58,8 +62,9 @@ class Outlet {
   [[nodiscard]] std::string_view name() const { return bus_->name(); }
 
  private:
-  /// Zero, behind whatever waits: at most one set point of motion does.
-  void rest_if_it_is_taken();
+  /// Puts zero behind whatever waits (at most one set point of motion does) and leaves, unless all has left
+  /// just now.
+  void leave_at_rest();
 
   std::unique_ptr<transport::Bus> bus_;
   Outgoing outgoing_;
@@ -68,6 +73,8 @@ class Outlet {
   BegunBehaviours behaviours_;
   can::Frame set_point_;      ///< of motors, the last that was sent
   std::uint64_t behind_ = 0;  ///< frames that were sent after it
+  Clock::time_point sent_at_{};
+  bool moves_later_ = false;  ///< it is one of motion, and may wait still
 };
 
 }  // namespace ocm::cli::replay

@@ -168,15 +168,16 @@ void Player::count(Outlet::Sent sent) {
   }
 }
 
-void Player::watch_until(base::Time time) const {
+void Player::watch_until(base::Time time) {
   std::vector<pollfd> buses;
   while (interrupted() == 0) {
     const base::Time now = monotonic_now();
     if (now >= time) return;
     UnhurriedMessages::write();
     buses.clear();
-    for (const Outlet& outlet : outlets_) {
+    for (Outlet& outlet : outlets_) {
       outlet.expect_open();
+      outlet.expect_motion_left();
       buses.push_back({outlet.descriptor(), POLLIN, 0});
     }
     static_cast<void>(wait_for_input(buses, std::min(time - now, longest_wait)));

@@ -129,7 +129,7 @@ class Player {
   void count(Outlet::Sent sent);
   void print(const log::Entry& entry, const log::Interfaces& interfaces);
   /// Until `time`, or a signal; leaves through cli::fail as soon as a bus is gone.
-  void watch_until(base::Time time) const;
+  void watch_until(base::Time time);
   [[nodiscard]] std::optional<std::size_t> route(std::uint16_t interface, const log::Interfaces& interfaces);
 
   PlayerOptions options_;

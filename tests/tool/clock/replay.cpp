@@ -328,6 +328,40 @@ std::vector<log::Entry> drive_at(const std::vector<Duration>& times, bool rest_l
   return entries;
 }
 
+TEST_CASE("replay: a set point that waits is not left to wait until the next one is due") {
+  const Silence silence;
+  World world{1};
+  PlayedBus::Conditions conditions;
+  const Moment begin = World::start + 900ms;
+  conditions.stuck = {{begin, begin + 3s}};
+  auto entries = drive_at({0s, 1s, 6s}, true);
+  std::erase_if(entries, [](const log::Entry& entry) { return entry.id != motors; });
+  OnOneBus<PlayedLog> replayed{world, conditions, entries, std::size_t{1}};
+  try {
+    replayed.play();
+    FAIL_CHECK("it went on");
+  } catch (const cli::Exit& exit) {
+    CHECK(exit.code == 1);
+  }
+  CHECK(world.now() < World::start + 1s + client::longest_without_set_point + 250ms);
+  REQUIRE(replayed.sent().size() == 3);
+  CHECK(!cli::is_rest(replayed.sent()[1].frame));
+  CHECK(cli::is_rest(replayed.sent()[2].frame));
+}
+
+TEST_CASE("replay: a set point that has left may be older than the next one") {
+  const Silence silence;
+  World world{1};
+  PlayedBus::Conditions conditions;
+  const Moment begin = World::start + 1200ms;  // the one of 1 s has left, what comes behind it waits
+  conditions.stuck = {{begin, begin + 2s}};
+  auto entries = drive_at({0s, 1s, 6s}, true);
+  entries.emplace(entries.end() - 2, base::Time{1500ms}, can::Frame{0x601, 4, {2}}, std::uint16_t{0});
+  OnOneBus<PlayedLog> replayed{world, conditions, entries, std::size_t{1}};
+  replayed.play();
+  CHECK(replayed.sent().size() == entries.size());
+}
+
 TEST_CASE("replay: a stop of the program while the motors run ends it, whenever that was") {
   const Silence silence;
   std::vector<Duration> times;
