@@ -139,6 +139,16 @@ namespace detail {
 
 }  // namespace detail
 
+namespace detail {
+
+/// Whether it is a count or a code, of which there are no fractions.
+[[nodiscard]] inline bool is_whole(const protocol::Field& field) {
+  return !field.is_float() && field.unit.empty() && field.scale == base::Decimal{1, 0} &&
+         field.offset.exponent >= 0;
+}
+
+}  // namespace detail
+
 /// A number for a field, from "0.05m/s", "12" (in the field's unit), "0x0C" (the same) or the name of a value
 /// that is no such number. The error is said in words, with the field's unit and range.
 [[nodiscard]] inline base::Result<std::int64_t, std::string> parse_value(const protocol::Field& field,
@@ -173,6 +183,8 @@ namespace detail {
                    : field.is_float() ? field.float_from(physical->as_double())
                                       : field.raw_from(*physical);
   if (!raw) return detail::quoted(text) + " is out of range: " + detail::takes(field);
+  if (detail::is_whole(field) && base::normalised(physical->digits, physical->exponent).exponent < 0)
+    return detail::quoted(text) + " is no whole number: " + detail::takes(field);
   return *raw;
 }
 

@@ -176,6 +176,29 @@ TEST_CASE("a number without a unit stays one") {
   CHECK(parse_typed_value(action, "measure") == parse_value(action, "measure"));
 }
 
+TEST_CASE("of a count or a code there are no fractions") {
+  const auto& red = amiro::catalogue.find("led_1")->frames[0].fields[0];
+  const auto& action = amiro::catalogue.find("floor_calibration")->frames[0].fields[0];
+  CHECK(parse_value(red, "1.5").error == "'1.5' is no whole number: red takes 0 to 255");
+  CHECK(parse_value(action, "0.5").error.starts_with("'0.5' is no whole number: action takes "));
+  CHECK(parse_value(red, "-0.4").error.starts_with("'-0.4' is no whole number"));
+  CHECK(parse_value(red, "1.0") == 1);
+  CHECK(parse_value(red, "20e1") == 200);
+  // Of what is measured the nearest is meant.
+  const auto& x = amiro::catalogue.find("motors")->frames[0].fields[0];
+  CHECK(parse_value(x, "0.0000014") == 1);
+  protocol::Field field{"count", {0, 16, protocol::ByteOrder::little}, true, {1, 0}, {}, "1/min", -900, 900,
+                        {}};
+  CHECK(parse_value(field, "1.5") == 2);
+  field.unit = {};
+  CHECK_FALSE(parse_value(field, "1.5").ok());
+  field.offset = {5, -1};
+  CHECK(parse_value(field, "1.5") == 1);
+  field.offset = {};
+  field.scale = {5, -1};
+  CHECK(parse_value(field, "1.5") == 3);
+}
+
 TEST_CASE("a number with more digits than a Decimal has is a raw number all the same") {
   const auto has = [](const std::string& text, std::string_view part) {
     return text.find(part) != std::string::npos;
