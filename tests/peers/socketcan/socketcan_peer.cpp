@@ -48,6 +48,9 @@ std::unique_ptr<SocketCan> open(const std::string& interface, transport::SocketC
   return std::move(bus.value);
 }
 
+/// For what must come: a program of this guest starts in a tenth of a second, on a busy machine in many.
+constexpr base::Duration patience = 60s;
+
 /// All frames until none came for `quiet`.
 std::vector<can::Received> drain(SocketCan& bus, base::Duration quiet = 300ms) {
   std::vector<can::Received> all;
@@ -68,8 +71,8 @@ base::Time now() {
 }
 
 template <class Predicate>
-bool eventually(Predicate holds, std::chrono::milliseconds limit = 5s) {
-  const auto end = std::chrono::steady_clock::now() + limit;
+bool eventually(Predicate holds) {
+  const auto end = std::chrono::steady_clock::now() + patience;
   while (std::chrono::steady_clock::now() < end) {
     if (holds()) return true;
     std::this_thread::sleep_for(5ms);
@@ -118,7 +121,7 @@ class Adapter {
     REQUIRE(ioctl(slave, SIOCGIFNAME, &request) == 0);
     name_ = request.ifr_name;
     // The driver opens the channel with commands, and waits until they are read.
-    std::thread reader([this] { opening_ = sent(2s, "O\r"); });
+    std::thread reader([this] { opening_ = sent(60s, "O\r"); });
     const int result = std::system(("ip link set " + name_ + " up type can bitrate 500000").c_str());
     reader.join();
     REQUIRE(result == 0);
@@ -161,7 +164,7 @@ TEST_CASE("what cansend sends is received", "[plain]") {
   const auto bus = open("vcan0");
   for (const std::string& kind : kinds) {
     shell("cansend vcan0 " + kind);
-    const auto received = bus->receive(2s);
+    const auto received = bus->receive(patience);
     REQUIRE(received);
     CHECK(text(received->frame) == kind);
   }
@@ -183,11 +186,13 @@ TEST_CASE("CAN FD frames and classic ones are received and sent on one socket") 
   const std::vector<std::string> both = {
       "123##1DEADBEEF", "123#DEADBEEF", "1F334455##0" + std::string(128, 'A'), "7FF##2", "456#R", "000##311"};
   for (const std::string& one : both) {
+    const base::Time before = now();
     shell("cansend vcan7 " + one);
-    const auto received = ours->receive_any(2s);
+    const auto received = ours->receive_any(patience);
     REQUIRE(received);
     CHECK(can::to_text(received->frame).view() == one);
-    CHECK(now() - received->time < 2s);
+    CHECK(received->time >= before);
+    CHECK(received->time <= now());
   }
   while (theirs->receive_any(0ms)) {
   }
@@ -199,7 +204,7 @@ TEST_CASE("CAN FD frames and classic ones are received and sent on one socket") 
   REQUIRE(eventually([&] { return listeners("vcan7") > before; }));
   for (const std::string& one : both) REQUIRE(ours->send_any(*can::parse_any_frame(one)).value);
   for (const std::string& one : both) {
-    const auto received = theirs->receive_any(2s);
+    const auto received = theirs->receive_any(patience);
     REQUIRE(received);
     CHECK(can::to_text(received->frame).view() == one);
   }
@@ -220,7 +225,7 @@ TEST_CASE("CAN FD frames and classic ones are received and sent on one socket") 
   // Who asks for classic frames alone gets these alone, and the others are counted.
   shell("cansend vcan7 123##1AA");
   shell("cansend vcan7 124#BB");
-  const auto classic = ours->receive(2s);
+  const auto classic = ours->receive(patience);
   REQUIRE(classic);
   CHECK(text(classic->frame) == "124#BB");
   CHECK(ours->counters().passed_over == 1);
@@ -228,8 +233,8 @@ TEST_CASE("CAN FD frames and classic ones are received and sent on one socket") 
   const can::Filter only{0x123, 0x7FF};
   REQUIRE(ours->subscribe({&only, 1}));
   for (const char* one : {"124##1AA", "123##1CC", "123#DD"}) shell(std::string("cansend vcan7 ") + one);
-  CHECK(can::to_text(ours->receive_any(2s)->frame).view() == "123##1CC");
-  CHECK(can::to_text(ours->receive_any(2s)->frame).view() == "123#DD");
+  CHECK(can::to_text(ours->receive_any(patience)->frame).view() == "123##1CC");
+  CHECK(can::to_text(ours->receive_any(patience)->frame).view() == "123#DD");
 }
 
 TEST_CASE("a CAN FD frame for an interface without CAN FD is refused in words, and taken once it has it") {
@@ -286,7 +291,7 @@ TEST_CASE("others on this machine hear us, we do not hear ourselves", "[plain]")
   const auto one = open("vcan0");
   const auto other = open("vcan0");
   REQUIRE(one->send(frame("123#01")).value);
-  REQUIRE(other->receive(2s));
+  REQUIRE(other->receive(patience));
   CHECK(one->receive(100ms).error == base::Error::timed_out);
 }
 
@@ -308,7 +313,7 @@ TEST_CASE("receive times are the kernel's, in Unix time, to the nanosecond, and 
     const base::Time before = now();
     REQUIRE(other->send(frame("123#01")).value);
     const base::Time after = now();
-    const auto received = bus->receive(2s);
+    const auto received = bus->receive(patience);
     REQUIRE(received);
     CHECK(received->time >= before);
     CHECK(received->time <= after);  // stamped on arrival, not when it was read
@@ -358,7 +363,7 @@ TEST_CASE("a frame that several filters accept comes once") {
 TEST_CASE("error frames are put into words") {
   const auto bus = open("vcan0");
   shell("cansend vcan0 20000040#0000000000000000");
-  const auto received = bus->receive(2s);
+  const auto received = bus->receive(patience);
   REQUIRE(received);
   CHECK(received->frame.format == can::Format::error);
   CHECK(can::describe(received->frame) == "bus-off: the controller has left the bus");
@@ -414,7 +419,7 @@ TEST_CASE("a flood of 20000 frames from cangen comes whole and in order") {
   shell("cangen vcan0 -g 0 -p 10 -n 20000 -I 123 -L 8 -D i &");
   std::uint64_t expected = 0;
   bool in_order = true;
-  while (const auto received = bus->receive(2s)) {
+  while (const auto received = bus->receive(patience)) {
     std::uint64_t number = 0;  // cangen -D i counts in the data, first byte lowest
     for (unsigned i = 0; i < 8; ++i) number |= std::uint64_t{received->frame.data[i]} << (8 * i);
     in_order = in_order && number == expected++;
@@ -450,7 +455,7 @@ TEST_CASE("what an adapter reports of its bus is put into words") {
   const auto bus = open(adapter.name());
   const auto next = [&](std::string_view line) {
     adapter.report(line);
-    const auto received = bus->receive(2s);
+    const auto received = bus->receive(patience);
     INFO(line);
     REQUIRE(received);
     return received->frame.format == can::Format::error ? std::string(can::describe(received->frame).view())
@@ -477,9 +482,9 @@ TEST_CASE("an interface that goes down is reported, and goes on when it is back"
   const auto bus = open("vcan7");
   const auto begin = std::chrono::steady_clock::now();
   shell("(sleep 0.2; ip link set vcan7 down) &");
-  CHECK(bus->receive(10s).error == base::Error::timed_out);
+  CHECK(bus->receive(2 * patience).error == base::Error::timed_out);
   CHECK(bus->state() == BusState::down);
-  CHECK(std::chrono::steady_clock::now() - begin < 5s);  // at once, not after ten seconds
+  CHECK(std::chrono::steady_clock::now() - begin < patience);  // at once, not after two minutes
   CHECK(bus->failure().what.empty());
 
   const auto taken = bus->send(frame("123#01"));
@@ -491,11 +496,11 @@ TEST_CASE("an interface that goes down is reported, and goes on when it is back"
 
   const auto again = std::chrono::steady_clock::now();
   shell("(sleep 0.2; ip link set vcan7 up) &");
-  CHECK(bus->receive(10s).error == base::Error::timed_out);
+  CHECK(bus->receive(2 * patience).error == base::Error::timed_out);
   CHECK(bus->state() == BusState::up);
-  CHECK(std::chrono::steady_clock::now() - again < 5s);
+  CHECK(std::chrono::steady_clock::now() - again < patience);
   shell("cansend vcan7 123#02");
-  const auto received = bus->receive(2s);
+  const auto received = bus->receive(patience);
   REQUIRE(received);
   CHECK(text(received->frame) == "123#02");
   CHECK(bus->send(frame("123#03")).value);
@@ -533,12 +538,12 @@ TEST_CASE("an interface that is deleted ends the bus, after the frames that wait
   shell("cansend vcan7 123#02");
   shell("ip link del vcan7");
   CHECK(texts(drain(*bus)) == std::vector<std::string>{"123#01", "123#02"});
-  CHECK(bus->receive(10s).error == base::Error::closed);
+  CHECK(bus->receive(2 * patience).error == base::Error::closed);
   CHECK(bus->state() == BusState::closed);
   CHECK(bus->failure().what == "interface 'vcan7' is gone: unplugged or deleted");
   CHECK_FALSE(bus->failure().remedy.empty());
   CHECK(bus->send(frame("123#01")).error == base::Error::closed);
-  CHECK(bus->receive(10s).error == base::Error::closed);
+  CHECK(bus->receive(2 * patience).error == base::Error::closed);
 }
 
 TEST_CASE("an interface that is deleted while it is down ends the bus") {
@@ -549,8 +554,8 @@ TEST_CASE("an interface that is deleted while it is down ends the bus") {
   CHECK(bus->state() == BusState::down);
   shell("(sleep 0.1; ip link del vcan7) &");
   const auto begin = std::chrono::steady_clock::now();
-  CHECK(bus->receive(10s).error == base::Error::closed);
-  CHECK(std::chrono::steady_clock::now() - begin < 5s);
+  CHECK(bus->receive(2 * patience).error == base::Error::closed);
+  CHECK(std::chrono::steady_clock::now() - begin < patience);
 }
 
 TEST_CASE("a sender that does not listen sees that the interface was deleted") {
@@ -594,30 +599,36 @@ TEST_CASE("a signal ends the wait", "[plain]") {
   action.sa_handler = [](int) {};
   REQUIRE(sigaction(SIGALRM, &action, nullptr) == 0);
   const auto bus = open("vcan0");
-  const itimerval soon{{0, 0}, {0, 100'000}};
+  const itimerval soon{{0, 100'000}, {0, 100'000}};  // again and again: the first may come before the wait
+  const itimerval never{};
   const auto begin = std::chrono::steady_clock::now();
   REQUIRE(setitimer(ITIMER_REAL, &soon, nullptr) == 0);
-  CHECK(bus->receive(10s).error == base::Error::timed_out);
-  CHECK(std::chrono::steady_clock::now() - begin < 5s);
+  CHECK(bus->receive(2 * patience).error == base::Error::timed_out);
+  CHECK(std::chrono::steady_clock::now() - begin < patience);
+  REQUIRE(setitimer(ITIMER_REAL, &never, nullptr) == 0);
 }
 
 TEST_CASE("a timeout is kept", "[plain]") {
   const auto bus = open("vcan0");
-  const auto begin = std::chrono::steady_clock::now();
-  CHECK(bus->receive(0ms).error == base::Error::timed_out);
-  CHECK(bus->receive(-1s).error == base::Error::timed_out);
-  CHECK(std::chrono::steady_clock::now() - begin < 100ms);
-  CHECK(bus->receive(150ms).error == base::Error::timed_out);
-  const auto elapsed = std::chrono::steady_clock::now() - begin;
-  CHECK(elapsed >= 150ms);
-  CHECK(elapsed < 1s);
+  const auto took = [&](base::Duration timeout) {
+    const auto begin = std::chrono::steady_clock::now();
+    CHECK(bus->receive(timeout).error == base::Error::timed_out);
+    return std::chrono::steady_clock::now() - begin;
+  };
+  // Once of many times: on a busy machine this test itself is held up.
+  CHECK(eventually([&] { return took(0ms) + took(-1s) < 100ms; }));
+  CHECK(eventually([&] {
+    const auto elapsed = took(150ms);
+    REQUIRE(elapsed >= 150ms);
+    return elapsed < 1s;
+  }));
 }
 
 // Not a test by itself: answers every frame with identifier ^ 1 for a peer to compare, until 7FF# comes.
 TEST_CASE("echo", "[.echo]") {
   const auto bus = open("vcan0");
   for (;;) {
-    const auto received = bus->receive(20s);
+    const auto received = bus->receive(patience);
     REQUIRE(received);
     can::Frame answer = received->frame;
     if (answer.id == can::max_base_id) return;
