@@ -16,13 +16,12 @@
 namespace ocm::cli::analyse {
 namespace {
 
-/// Letters and digits alone, in lower case: files write "CyclicAndSpontaneous", "cyclic_and_spontaneous" and
-/// others.
+/// Letters alone, in lower case: files write "CyclicAndSpontaneous", "cyclic_and_spontaneous" and others.
 std::string plain(std::string_view name) {
   std::string out;
   for (const char c : name) {
     if (c >= 'A' && c <= 'Z') out += static_cast<char>(c - 'A' + 'a');
-    if ((c >= 'a' && c <= 'z') || (c >= '0' && c <= '9')) out += c;
+    if (c >= 'a' && c <= 'z') out += c;
   }
   return out;
 }
