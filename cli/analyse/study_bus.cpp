@@ -270,7 +270,7 @@ void assign(BusSet& set, const BusOptions& options, Assign what) {
 BusOptions at_rates_of(const BusSet& set, BusOptions options) {
   if (options.bit_rate == 0) options.bit_rate = set.bit_rate != 0 ? set.bit_rate : options.usual_bit_rate;
   if (options.bit_rate == 0)
-    fail({"analyse: the spec says no bit rate", "--bitrate gives it, such as --bitrate 500k"}, exit_usage);
+    fail({"the spec says no bit rate", "--bitrate gives it, such as --bitrate 500k"}, exit_usage);
   if (options.data_bit_rate == 0)
     options.data_bit_rate = set.data_bit_rate;
   else if (options.data_bit_rate < options.bit_rate)

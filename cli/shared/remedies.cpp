@@ -110,7 +110,8 @@ std::string remedy(const client::Refused& refused) {
         "board was built from another one",
         topic.name);
   if (reason == "out_of_range")
-    return fmt::format("`amiroctl info {}` says which values it accepts", topic.name);
+    return fmt::format(
+        "it accepts less than the range that `amiroctl info {}` shows: docs/topics.md says what", topic.name);
   return "`amiroctl doctor` says which parts do not answer; when they do, it accepts the same again";
 }
 

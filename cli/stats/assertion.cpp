@@ -37,7 +37,10 @@ std::optional<double> if_distances(const TopicFigures& topic, double value) {
 }
 
 constexpr Quantity quantities[] = {
-    {"rate", Unit::hertz, [](const TopicFigures& t) { return if_distances(t, t.timing.rate_hz); },
+    {"rate", Unit::hertz,
+     [](const TopicFigures& t) -> std::optional<double> {  // none in a log without times
+       return t.timing.rate_hz > 0 ? if_distances(t, t.timing.rate_hz) : std::nullopt;
+     },
      [](const Bus& b) -> std::optional<double> {
        return b.figures.span().count() > 0 ? std::optional{b.figures.rate_hz} : std::nullopt;
      }},

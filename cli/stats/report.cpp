@@ -152,7 +152,7 @@ std::vector<std::string> summary(const Bus& bus) {
   const BusFigures& figures = bus.figures;
   const auto& counters = figures.counters;
   std::vector<std::string> lines;
-  std::string load = "its load: --bitrate 500k";
+  std::string load = "for its load: --bitrate 500k";
   if (figures.bit_rates.nominal != 0)
     load = fmt::format("load {} at {} kbit/s, {} in the worst 100 ms, until {}",
                        to_text(figures.load * 100, Unit::percent), kbit_per_second(figures),

@@ -155,7 +155,7 @@ void View::heads(Picture& picture, const Scene& scene, const Rows& rows, std::si
     if (sum.load_known)
       line.put_whole(fmt::format("  worst {}", percent(sum.worst_load)), Style::dim);
     else
-      line.put_whole("  its load: --bitrate 500k", Style::dim);
+      line.put_whole("  for its load: --bitrate 500k", Style::dim);
     picture.push_back(line.take());
 
     LineWriter counters{width};

@@ -9,6 +9,7 @@
 
 #include "cli/logs/opened_log.hpp"
 #include "cli/shared/interrupt.hpp"
+#include "cli/shared/output_file.hpp"
 #include "cli/shared/values.hpp"
 #include "cli/verbs/verb.hpp"
 #include "cli/watch/choice.hpp"
@@ -33,6 +34,7 @@ class Window {
  public:
   Window(const protocol::Catalogue& catalogue, const DecodeOptions& options)
       : choice_("decode", catalogue, options.choice) {
+    choice_.expect_any_of(options.format.fields);
     since_ = options.since.value_or(since_);
     until_ = options.until.value_or(until_);
   }
@@ -117,7 +119,9 @@ void decode(Session& session, const DecodeOptions& options, int& exit_code) {
             fmt::format("--topic {} chooses it", file)},
            exit_usage);
   const std::vector<std::string> standard_input{"-"};
-  for (const auto& file : options.files.empty() ? standard_input : options.files) {
+  const auto& files = options.files.empty() ? standard_input : options.files;
+  for (const auto& file : files) refuse_same_file("decode", file, "-");
+  for (const auto& file : files) {
     if (decoding.over()) break;
     logs::OpenedLog log{file, options.from, catalogue};
     decoding.read(log);

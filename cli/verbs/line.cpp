@@ -16,6 +16,7 @@
 #include "cli/output/printer.hpp"
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/messages.hpp"
+#include "cli/shared/output_file.hpp"
 #include "cli/verbs/verb.hpp"
 
 namespace ocm::cli {
@@ -284,6 +285,7 @@ std::uint64_t show(log::Source& source, Streams& streams, std::uint64_t most) {
 }
 
 void run_line(const LineOptions& options, int& exit_code) {
+  refuse_same_file("line", options.file, "-");
   catch_interrupts();
   logs::FileSource source{options.file};
   const std::string shown_name = options.file == "-" ? "the standard input" : options.file;

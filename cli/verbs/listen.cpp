@@ -47,6 +47,7 @@ std::vector<const protocol::Topic*> awaited_topics(const protocol::Catalogue& ca
 void listen(Session& session, const ListenOptions& options, int& exit_code) {
   const auto& catalogue = session.catalogue();
   Choice choice{"listen", catalogue, options.choice};
+  choice.expect_any_of(options.format.fields);
   constexpr base::Duration without_end = base::Duration::max() / 4;
   const base::Duration timeout = options.timeout.value_or(without_end);
   const base::Duration idle = options.idle_timeout.value_or(without_end);

@@ -10,6 +10,7 @@
 #include "cli/fleet/map_view.hpp"
 #include "cli/serve/beside.hpp"
 #include "cli/shared/interrupt.hpp"
+#include "cli/shared/output_file.hpp"
 #include "cli/shared/values.hpp"
 #include "cli/verbs/verb.hpp"
 
@@ -35,11 +36,13 @@ void check_files(const std::vector<std::string>& files) {
   for (const std::string& file : files)
     if (!fleet::is_map_file(file))
       fail({fmt::format("map: {}: no kind of map", file), "end it in .svg, .png, .pdf or .pgm"}, exit_usage);
-  for (const std::string& file : files)
-    if (auto failure = fleet::cannot_draw(file)) {
-      failure->what = "map: " + failure->what;
-      fail(*failure);
-    }
+  for (const std::string& file : files) {
+    auto failure = fleet::cannot_draw(file);
+    if (!failure) failure = cannot_write(file);
+    if (!failure) continue;
+    failure->what = "map: " + failure->what;
+    fail(*failure);
+  }
 }
 
 /// Writes all that can be written, and reports each file that cannot.

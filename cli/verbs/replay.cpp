@@ -20,6 +20,7 @@
 #include "cli/shared/live.hpp"
 #include "cli/shared/messages.hpp"
 #include "cli/shared/outgoing.hpp"
+#include "cli/shared/output_file.hpp"
 #include "cli/shared/values.hpp"
 #include "cli/verbs/verb.hpp"
 #include "cli/watch/chosen_topics.hpp"
@@ -197,6 +198,7 @@ void play(Session& session, const ReplayOptions& options, int& exit_code) {
   if (options.passes != 1 && options.dry_run)
     fail({"replay: --dry-run plays once", "drop --loop"}, exit_usage);
 
+  if (options.dry_run) refuse_same_file("replay", options.file, "-");
   catch_interrupts();
   catch_hangups();
   auto log = std::make_unique<logs::OpenedLog>(options.file, options.from_format, catalogue);

@@ -67,9 +67,7 @@ void serve_given(Verb verb, Session& session, GivenToServe& given, int& exit_cod
   serve::WebOptions& web = options.web;
   take_robots(verb, given);
   if (given.words.size() > 1)
-    fail({fmt::format("serve: unexpected argument '{}'", given.words[1]),
-          "one log at a time; amiroctl convert puts several into one"},
-         exit_usage);
+    fail({fmt::format("serve: unexpected argument '{}'", given.words[1]), "one log at a time"}, exit_usage);
   const Words words = split_words("serve", given.words, [](std::string_view) { return false; });
   if (!words.others.empty()) {
     const auto near = words::nearest(words.others[0], std::vector<std::string_view>{"robots", "live"});

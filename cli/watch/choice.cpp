@@ -91,7 +91,7 @@ void add_choice_options(Verb verb, ChoiceOptions& options) {
 }
 
 Choice::Choice(std::string_view verb, const protocol::Catalogue& catalogue, const ChoiceOptions& options)
-    : topics_(chosen_topics(verb, catalogue, options.topics)) {
+    : verb_(verb), catalogue_(&catalogue), topics_(chosen_topics(verb, catalogue, options.topics)) {
   for (const std::string& sender : options.senders) add_sent_by(verb, catalogue, sender, topics_);
   for (const std::string& text : options.filters) {
     const auto filter = parse_filter(text);
@@ -107,6 +107,19 @@ Choice::Choice(std::string_view verb, const protocol::Catalogue& catalogue, cons
   if (topics_.empty() && filters_.empty() && options.senders.empty())
     for (const Held& held : conditions_)
       for (const HeldField& each : held.fields) topics_.push_back(each.of.topic);
+}
+
+void Choice::expect_any_of(const std::vector<std::string>& fields) const {
+  const auto selection = Selection::of(*catalogue_, fields);
+  if (!selection || selection->everything() || topics_.empty() || !filters_.empty()) return;
+  const auto chosen = selection->fields();
+  if (std::any_of(chosen.begin(), chosen.end(),
+                  [this](const ChosenField& field) { return contains(topics_, field.topic); }))
+    return;
+  fail({fmt::format("{}: --field {}, and what is chosen is {}", verb_, chosen[0].name, topics_[0]->name),
+        fmt::format("choose {}, too, or a field that `amiroctl info {}` shows", chosen[0].topic->name,
+                    topics_[0]->name)},
+       exit_usage);
 }
 
 void Choice::read_conditions(std::string_view verb, const protocol::Catalogue& catalogue,

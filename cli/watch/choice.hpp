@@ -41,6 +41,9 @@ class Choice {
   /// The topics and messages that are named, or whose sender is.
   [[nodiscard]] const std::vector<const protocol::Topic*>& topics() const noexcept { return topics_; }
 
+  /// Leaves through cli::fail where fields are chosen (words of --field), and each is of a topic that is not.
+  void expect_any_of(const std::vector<std::string>& fields) const;
+
   /// Whether a frame is shown. Ask of all frames in the order in which they came: a condition holds from the
   /// frame in which it does until the frame in which it does not.
   [[nodiscard]] bool has(const log::Entry& entry) { return everything_ || is_chosen(entry); }
@@ -80,6 +83,8 @@ class Choice {
   void read_conditions(std::string_view verb, const protocol::Catalogue& catalogue,
                        const std::vector<std::string>& conditions);
 
+  std::string verb_;  // for messages
+  const protocol::Catalogue* catalogue_;
   bool everything_ = true;
   std::vector<const protocol::Topic*> topics_;
   Filters filters_;  ///< of identifiers and parameter groups

@@ -298,7 +298,9 @@ class Decode(Case):
         self.assertEqual(raw, "(0000000000.000000) can0 605#00D20000\n")
 
     def test_wrong_usage(self):
-        for arguments, word in ((["--field", "gyro.w"], "no field 'gyro.w'"), (["--field", "gyra"], "no topic 'gyra'"),
+        for arguments, word in ((["--topic", "gyro", "--field", "odom.velocity.x"], "decode: --field odometry.velocity.x, and what is chosen is gyroscope"),
+                                (["--where", "gyro.x>1", "--field", "power"], "and what is chosen is gyroscope"),
+                                (["--field", "gyro.w"], "no field 'gyro.w'"), (["--field", "gyra"], "no topic 'gyra'"),
                                 (["--topic", "gyra"], "no topic 'gyra'"), (["--json", "--csv"], "--"),
                                 (["--raw", "--field", "gyro"], "--raw"), (["--since", "soon"], "--since soon"),
                                 (["--from", "xml"], "xml")):
@@ -473,6 +475,19 @@ class Encode(Case):
             _, err = self.run_tool("encode", stdin=line + "\n", code=1)
             self.assertIn("standard input:1: " if "x takes" not in what else "is out of range", err)
             self.assertIn(what, err)
+
+    def test_what_is_appended_to_a_log_is_not_read_from_it(self):
+        path = os.path.join(self.folder, "growing.log")
+        with open(path, "w", encoding="ascii") as file:
+            file.write(LOG)
+        for words, verb in ((("decode", path), "decode"), (("decode", "--raw"), "decode"), (("replay", path, "--dry-run"), "replay"), (("line", path), "line")):
+            with open(path, encoding="ascii") as source, open(path, "a", encoding="ascii") as sink:
+                process = self.start(*words, stdin=source, stdout=sink)
+                _, err = process.communicate(timeout=60)
+            self.assertEqual(process.returncode, 2, words)
+            self.assertRegex(err, f"amiroctl: {verb}: (the standard input|{path}) and the standard output are the same file\n")
+            with open(path, encoding="ascii") as file:
+                self.assertEqual(file.read(), LOG)
 
     def test_encode_replaces_no_input_and_guesses_no_format(self):
         path = os.path.join(self.folder, "frames.jsonl")

@@ -233,11 +233,18 @@ class Map(Case):
 
     def test_nothing_is_written_where_it_cannot_be(self):
         # The others are written all the same.
-        file = self.path("a.pgm")
-        _, err = self.map("/proc/a.pgm", file, duration="1s", code=1)
-        self.assertIn("/proc/a.pgm", err)
+        file, full = self.path("a.pgm"), self.path("full.pgm")
+        os.symlink("/dev/full", full)
+        _, err = self.map(full, file, duration="1s", code=1)
+        self.assertIn(full, err)
         self.assertIn(f"map: {file}", err)
         self.check_drawn(file)
+
+    def test_where_nothing_can_be_written_no_robot_drives(self):
+        for name, why in ((self.path("none/a.pgm"), "cannot be written: No such file or directory"), (self.path("folder.pgm"), "it is a folder")):
+            os.makedirs(self.path("folder.pgm"), exist_ok=True)
+            _, err = self.run_tool("map", name, code=1)  # there is no central either
+            self.assertIn(f"amiroctl: map: {name}: {why}", err.replace("it cannot", "cannot"))
 
     def test_without_gnuplot(self):
         """Said before any robot drives for it: here there is none, and none is looked for."""

@@ -544,7 +544,7 @@ did you mean 'robots'?
 
 serve a.log b.log
 serve: unexpected argument 'b.log'
-one log at a time; amiroctl convert puts several into one
+one log at a time
 
 serve --port 70000
 serve: --port 70000: out of range

@@ -235,6 +235,14 @@ class Stats(Case):
             self.assertIn(f"does not hold: {expression}: {measured}", err)
             self.assertIn("gyroscope", out)
 
+    def test_a_log_without_times_has_no_rate(self):
+        path = os.path.join(self.folder, "screen.log")
+        with open(path, "w", encoding="ascii") as file:
+            file.write("  can0  608   [6]  00 11 22 33 44 55\n" * 3)
+        for expression in ("gyro.rate<1", "bus.rate<1"):
+            _, err = self.run_tool("stats", path, "--assert", expression, code=1)
+            self.assertIn(f"does not hold: {expression}: nothing was measured", err)
+
     def test_a_gap_is_measured_from_a_request_on(self):
         path = self.log([(0, "208#01640000"), (1000, "655#")])
         self.run_tool("stats", path, "--assert", "gyro.gap==1s", "--assert", "gyro.missing==9")
@@ -390,7 +398,7 @@ class Stats(Case):
         with open(log, "w", encoding="ascii") as file:
             file.writelines(f"({1 + number / 10:.1f}) can0 100#0000000000000000\n" for number in range(11))
         out, _ = self.run_tool("--spec", spec, "stats", log)
-        self.assertRegex(out, r"can0: 11 frames in 1\S* s \(10 Hz\); its load: --bitrate 500k")
+        self.assertRegex(out, r"can0: 11 frames in 1\S* s \(10 Hz\); for its load: --bitrate 500k")
         out, _ = self.run_tool("--spec", spec, "stats", log, "--json")
         bus, = json.loads(out)["buses"]
         self.assertEqual([bus[key] for key in ("bit_rate", "load_percent", "request_load_percent", "unknown_load_percent",
