@@ -119,7 +119,9 @@ int run_amiro(const sim::AmiroOptions& options, const ShowOptions& show, Session
   catch_interrupts();
   catch_hangups();  // a closed terminal is no crash
   if (!session.spec_files.empty() && options.messages == nullptr)
-    remark("the simulated robot is the AMiRo, whatever --spec says");
+    remark(
+        "the simulated robot is the AMiRo, whatever --spec says; --without "
+        "di_wheel_drive,power_management,light_ring leaves the bus to boards of your own");
   const BusName bus_name = bus_name_of(session);
   if (bus_name.kind == BusName::Kind::simulated) {
     (void)session.catalogue();  // read here: the page has a thread of its own

@@ -7,7 +7,7 @@ import signal
 import subprocess
 import time
 
-from harness import AMIROCTL, SOURCE, Case, main
+from harness import AMIROCTL, SOURCE, Case, main, waiting
 
 
 class OnTheBus(Case):
@@ -358,11 +358,31 @@ class Library(Case):
         ids = [frame["id"] for frame in self.objects(out)]
         self.assertEqual((ids[0], ids.count("508"), ids[-1]), ("108", 5, "208"))
 
-    def test_the_operator_says_what_to_do_without_a_robot(self):
-        result = subprocess.run([os.environ["EXAMPLE_OPERATOR"]], env=self.environment, text=True, capture_output=True,
-                                timeout=20)
-        self.assertEqual(result.returncode, 1)
-        self.assertIn("no simulator is running", result.stderr)
+    def test_the_board_of_the_examples_takes_the_place_of_a_simulated_one(self):
+        sim = self.start_sim("--without", "di_wheel_drive")
+        program = [os.environ["EXAMPLE_OPERATOR"].replace("example_5_operator", "example_5_board_on_sim")]
+        board = waiting.Program(program, env=self.environment, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        self._started.append(board)
+        self.run_tool("publish", "accel", "20ms")
+        listener = self.listen("accel", "-n", "1", "--where", "accel.x>0")
+        drive = self.start("drive", "5cm/s")
+        out, _ = listener.communicate(timeout=60)
+        self.interrupt(drive)
+        self.assertEqual([sample["data"][:4] for sample in self.objects(out)], ["3200"])  # 50, from the set point
+        _, err = self.run_tool("publish", "gyro", "20ms", code=1)
+        self.assertIn("di_wheel_drive refuses gyroscope: not_served", err)
+        self.interrupt(sim)
+        out, err = board.communicate(timeout=60)  # it sees that the bus is gone
+        self.assertEqual((board.returncode, err), (0, ""))
+        speeds = out.split("\n")
+        self.assertEqual((speeds[0], speeds[-2:]), ("0.050 m/s", ["0.000 m/s", ""]))
+
+    def test_the_examples_say_what_to_do_without_a_robot(self):
+        for name in ("example_5_operator", "example_5_board_on_sim"):
+            result = subprocess.run([os.environ["EXAMPLE_OPERATOR"].replace("example_5_operator", name)], env=self.environment, text=True,
+                                    capture_output=True, timeout=20)
+            self.assertEqual(result.returncode, 1)
+            self.assertIn("no simulator is running", result.stderr)
 
 
 class Several(Case):
