@@ -141,6 +141,20 @@ TEST_CASE("admission: what is said of a bus before a board is asked is as it was
   is_as_in("tests/tool/clock/golden/admission.txt", text);
 }
 
+TEST_CASE("admission: more identifiers than the load is computed of are refused") {
+  const auto heard = [](int count) {
+    Row row{{"publish", "gyro", "50ms"}, {}, {}};
+    for (int i = 0; i < count; ++i)
+      row.comes.push_back(
+          {frame(0x10000U + static_cast<std::uint32_t>(i), {}, can::Format::extended), i * 100us, 1s});
+    return said(row);
+  };
+  constexpr std::string_view words = "more than 512 identifiers on the bus: its load cannot be computed";
+  constexpr int others = 38;  // frames of the AMiRo: asked for, heard, or of what may run unheard
+  CHECK(heard(512 - others).find(words) == std::string::npos);
+  CHECK(heard(513 - others).find(words) != std::string::npos);
+}
+
 // --- what becomes of a behaviour ---
 
 can::Frame behaviour(int active, int ended, int more = 0) {
