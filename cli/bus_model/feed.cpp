@@ -69,6 +69,7 @@ LogFeed::LogFeed(std::string path, std::string format, const protocol::Catalogue
     }
   }
   log.complain();
+  cut_ = log.ended_early();
   if (!any && interrupted() == 0)
     fail({fmt::format("{}: no frame in it", path_), "amiroctl stats FILE says what is in a log"});
   playing_.length = log::Playback::distance(last, first_);

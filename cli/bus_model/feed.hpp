@@ -67,6 +67,8 @@ class LogFeed {
   void faster(double factor) noexcept { playing_.faster(factor); }
 
   [[nodiscard]] const Playing& playing() const noexcept { return playing_; }
+  /// Whether it could be read to its end, and is all there still.
+  [[nodiscard]] bool is_whole() const noexcept { return !cut_ && !shrank_; }
   /// Of the whole log.
   [[nodiscard]] const std::vector<std::string>& interfaces() const noexcept { return interfaces_; }
   [[nodiscard]] base::Time now() const noexcept { return first_ + playing_.at; }
@@ -81,6 +83,7 @@ class LogFeed {
   std::size_t size_ = 0;
   std::uint64_t frames_ = 0;  ///< of the whole log, when it was looked through
   std::uint64_t played_ = 0;  ///< since its beginning
+  bool cut_ = false;          ///< damaged, so that its end could not be read
   bool shrank_ = false;       ///< which is reported once
   base::Time first_{};
   std::vector<std::string> interfaces_;

@@ -209,8 +209,10 @@ int run(Session& session, const TopOptions& options) {
     log = std::make_unique<LogFeed>(options.log, options.format, session.catalogue());
   if (interrupted() != 0) return exit_code_after_interrupt(exit_success);
   const LiveFeed* const bus = live.get();
+  const LogFeed* const file = log.get();
 
   Over over = Over::signal;
+  bool all = true;
   transport::Failure gone;
   {
     const HeldMessages held;
@@ -219,9 +221,10 @@ int run(Session& session, const TopOptions& options) {
     Top top{session, options, **screen, std::move(live), std::move(log)};
     over = top.run();
     if (over == Over::gone) gone = bus->bus().failure();
+    all = file == nullptr || file->is_whole();
   }
   if (over == Over::gone) fail(gone);
-  return exit_code_after_interrupt(exit_success);
+  return exit_code_after_interrupt(all ? exit_success : exit_failure);
 }
 
 }  // namespace ocm::cli::top

@@ -1,6 +1,7 @@
 """amiroctl top on a real terminal, tmux: its keys, its sizes, and how it leaves the terminal."""
 
 import fcntl
+import gzip
 import os
 import pty
 import re
@@ -265,8 +266,19 @@ class Top(played_adapter.WithAdapter, screens.Screens):
         self.shows(120, "1000 of 3000 frames are not there any more")
         self.press(120, "q")
         lines = self.ended(120)
-        self.assertEqual(lines[-1], "END 0")
+        self.assertEqual(lines[-1], "END 1")
         self.assertRegex(" ".join(lines), r"drive\.log: 1000 of 3000 frames are not there any more: was it cut, or replaced\?")
+
+    def test_a_log_whose_end_cannot_be_read(self):
+        with open(self.log(seconds=60), "rb") as file:
+            packed = gzip.compress(file.read())
+        log = os.path.join(self.folder, "cut.log.gz")
+        with open(log, "wb") as file:
+            file.write(packed[: len(packed) // 2])
+        self.open(120, "top", log, rows=24)
+        self.shows(120, "gyroscope")
+        self.press(120, "q")
+        self.assertEqual(self.ended(120)[-1], "END 1")
 
     def test_stopped_and_continued(self):
         """Ctrl-Z gives the shell its terminal back, and fg brings the table again."""
