@@ -38,10 +38,14 @@ can_filter filter_of_group(std::string_view verb, const std::string& text) {
   std::string_view digits = text;
   if (digits.starts_with("0x")) digits.remove_prefix(2);
   const auto pgn = base::parse_unsigned(digits, 16);
-  if (!pgn || *pgn > 0x3'FFFF)
+  if (!pgn || *pgn > 0x3'FFFF) {
+    const auto decimal = base::parse_unsigned(text, 10);  // as the standard, and `list`, write it
     fail({fmt::format("{}: --pgn {}: not a parameter group", verb, text),
-          "write its number in hexadecimal, such as F004; at most 3FFFF"},
+          decimal && *decimal <= 0x3'FFFF
+              ? fmt::format("write its number in hexadecimal: {} is {:04X}", text, *decimal)
+              : "write its number in hexadecimal, such as F004; at most 3FFFF"},
          exit_usage);
+  }
   const auto group = static_cast<std::uint32_t>(*pgn);
   if (j1939::is_pdu1(group) && (group & 0xFF) != 0)
     fail({fmt::format("{}: --pgn {}: its last byte is a destination, which is no part of the group", verb,
