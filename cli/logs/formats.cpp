@@ -57,7 +57,7 @@ constexpr LogFormat formats[] = {
      make_writer<log::AscWriter>},
     {"candump", ".log", "text, as candump -l and -L write it", log::CandumpReader::recognises,
      make_reader<log::CandumpReader>, make_writer<log::CandumpWriter>},
-    {"candump-ns", ".log", "the same with nine digits of a second, which other tools take for something else",
+    {"candump-ns", ".log", "the same with nine digits of a second, which other tools read as a wrong time",
      nullptr, make_reader<log::CandumpReader>, make_writer<log::CandumpNanoWriter>},
     {"candump-screen", "", "what candump shows on a terminal", log::CandumpScreenReader::recognises,
      make_reader<log::CandumpScreenReader>, nullptr},

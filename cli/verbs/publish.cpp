@@ -11,7 +11,9 @@ void declare_publish(Verb verb, Session& session, int&) {
       "  amiroctl publish mag 900us --dry-run     prints 205#01840302\n"
       "  amiroctl publish odom --wait             the board's own period; shows the first sample\n"
       "  amiroctl publish ring 4ms --explain      what is on the bus, and how late each frame can be");
-  add_request_options(verb, session, "1us to 65535s; default: the topic's own period", Starts::stream);
+  add_request_options(verb, session,
+                      "TOPIC: a sensor; PERIOD: 1us to 65535s, default: the topic's own period",
+                      Starts::stream);
 }
 
 }  // namespace ocm::cli
