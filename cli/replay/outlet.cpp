@@ -47,14 +47,14 @@ Outlet::Sent Outlet::send(const log::Entry& entry, base::Time latest) {
   set_point_ = *frame;
   behind_ = 0;
   sent_at_ = Clock::now();
-  moves_later_ = !is_rest(*frame);
+  may_wait_ = !is_rest(*frame);
   return Sent::yes;
 }
 
 void Outlet::expect_motion_left() {
-  if (!moves_later_ || Clock::now() - sent_at_ < client::longest_without_set_point) return;
+  if (!may_wait_ || Clock::now() - sent_at_ < client::longest_without_set_point) return;
   const auto delivery = bus_->delivery();
-  moves_later_ = false;
+  may_wait_ = false;
   if (delivery.known && delivery.pending > behind_) leave_at_rest();
 }
 

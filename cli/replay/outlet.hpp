@@ -74,7 +74,7 @@ class Outlet {
   can::Frame set_point_;      ///< of motors, the last that was sent
   std::uint64_t behind_ = 0;  ///< frames that were sent after it
   Clock::time_point sent_at_{};
-  bool moves_later_ = false;  ///< it is one of motion, and may wait still
+  bool may_wait_ = false;  ///< it is one of motion, and may wait still
 };
 
 }  // namespace ocm::cli::replay

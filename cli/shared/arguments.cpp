@@ -639,7 +639,7 @@ std::string Verb::path() const {
 }
 
 std::string Verb::help() const {
-  static_cast<void>(verbs());
+  static_cast<void>(verbs());  // declares them: the help lists all
   // Not App::help, which shows that of the verb that was called.
   return app_->get_formatter()->make_help(app_, "", CLI::AppFormatMode::Normal);
 }

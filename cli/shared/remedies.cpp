@@ -111,7 +111,9 @@ std::string remedy(const client::Refused& refused) {
         topic.name);
   if (reason == "out_of_range")
     return fmt::format(
-        "it accepts less than the range that `amiroctl info {}` shows: docs/topics.md says what", topic.name);
+        "it accepts less than the range that `amiroctl info {}` shows: the field's description in the spec "
+        "says what",
+        topic.name);
   return "`amiroctl doctor` says which parts do not answer; when they do, it accepts the same again";
 }
 

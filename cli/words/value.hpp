@@ -137,10 +137,6 @@ namespace detail {
   return std::nullopt;
 }
 
-}  // namespace detail
-
-namespace detail {
-
 /// Whether it is a count or a code, of which there are no fractions.
 [[nodiscard]] inline bool is_whole(const protocol::Field& field) {
   return !field.is_float() && field.unit.empty() && field.scale == base::Decimal{1, 0} &&
