@@ -5,6 +5,9 @@
                                    on stdout a regular expression for `ctest -R`, then the targets that they run, a line each.
                                    Exit 2 where a name means none, with the nearest ones, of the PARTS of scripts/test,
                                    "release style", too.
+    runs.py programs BUILD LABELS TESTS
+                                   the targets that tests run whose name the regular expression TESTS finds and none of whose
+                                   labels LABELS does, as `ctest -LE LABELS -R TESTS` chooses them: on stdout, a line each.
     runs.py report [--left-out FILE]... JUNIT...
                                    of ctest's --output-junit: how many tests passed, which failed, which were skipped, whole
                                    or in part, which took longest; of the FILEs, which CMake has left out because a program is
@@ -51,7 +54,7 @@ def with_set_up(tests, chosen):
     return needed
 
 
-def programs(build, names):
+def paths(build, names):
     """Every path that the command or the environment of one of these tests names: as ctest's own files say it, for of a
     program that is not built yet it shows nothing."""
     found = set()
@@ -87,13 +90,24 @@ def select(build, parts, wanted):
             return 2
         chosen.update(found)
     print(f"^({'|'.join(sorted(map(re.escape, chosen)))})$")
+    print_programs(build, tests, chosen)
+    return 0
+
+
+def print_programs(build, tests, chosen):
     listed = subprocess.run(["ninja", "-C", build, "-t", "targets", "all"], check=True, capture_output=True, text=True).stdout
     build = os.path.abspath(build)
     executables = {os.path.normpath(os.path.join(build, line.split(":")[0]))
                    for line in listed.splitlines() if "EXECUTABLE_LINKER" in line}
-    used = programs(build, with_set_up(tests, chosen))
+    used = paths(build, with_set_up(tests, chosen))
     for path in sorted(executables & used):
         print(os.path.relpath(path, build))
+
+
+def programs(build, labels, names):
+    tests = known(build)
+    print_programs(build, tests, {name for name, test in tests.items() if re.search(names, name) and
+                                  not any(re.search(labels, label) for label in properties(test).get("LABELS", []))})
     return 0
 
 
@@ -140,6 +154,8 @@ def report(files, left_out_files=()):
 def main(arguments):
     if len(arguments) >= 4 and arguments[0] == "select":
         return select(arguments[1], arguments[2].split(), arguments[3:])
+    if len(arguments) == 4 and arguments[0] == "programs":
+        return programs(*arguments[1:])
     if arguments and arguments[0] == "report":
         files, without = arguments[1:], []
         while len(files) > 2 and files[0] == "--left-out":

@@ -87,13 +87,27 @@ class Registered(unittest.TestCase):
 
 
 class Programs(unittest.TestCase):
+    def programs(self, labels, tests):
+        done = subprocess.run([sys.executable, "-B", RUNS, "programs", os.environ["BUILD"], labels, tests], capture_output=True, text=True,
+                              check=True)
+        return done.stdout.split()
+
+    def test_a_program_that_only_the_environment_names(self):
+        self.assertEqual(self.programs("no such label", "^cli_bus$"),
+                         ["amiroctl", "examples/example_5_board_on_sim", "examples/example_5_operator"])
+
+    def test_tests_are_chosen_as_ctest_does(self):
+        self.assertEqual(self.programs("no such label", "^unit_ca|^unit_base$"), ["unit_base", "unit_can"])
+        self.assertEqual(self.programs("lon", "^(unit_can|unit_log)$"), ["unit_can"])  # unit_log has the label long
+        self.assertEqual(self.programs("long", "^no test$"), [])
+
     def test_paths_may_have_blanks(self):
         with tempfile.TemporaryDirectory(prefix="a tree ") as folder:
             with open(os.path.join(folder, "CTestTestfile.cmake"), "w", encoding="utf-8") as file:
                 file.write(f'add_test(unit_can "{folder}/unit_can")\n'
                            f'set_tests_properties(unit_can PROPERTIES  ENVIRONMENT "AMIROCTL={folder}/amiroctl;N=1")\n'
                            f'add_test(unit_base "{folder}/unit_base")\n')
-            found = runs.programs(folder, {"unit_can"})
+            found = runs.paths(folder, {"unit_can"})
         self.assertLessEqual({f"{folder}/unit_can", f"{folder}/amiroctl"}, found)
         self.assertNotIn(f"{folder}/unit_base", found)
 

@@ -360,8 +360,7 @@ class Library(Case):
 
     def test_the_board_of_the_examples_takes_the_place_of_a_simulated_one(self):
         sim = self.start_sim("--without", "di_wheel_drive")
-        program = [os.environ["EXAMPLE_OPERATOR"].replace("example_5_operator", "example_5_board_on_sim")]
-        board = waiting.Program(program, env=self.environment, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        board = waiting.Program([os.environ["EXAMPLE_BOARD"]], env=self.environment, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
         self._started.append(board)
         self.run_tool("publish", "accel", "20ms")
         listener = self.listen("accel", "-n", "1", "--where", "accel.x>0")
@@ -378,9 +377,8 @@ class Library(Case):
         self.assertEqual((speeds[0], speeds[-2:]), ("0.050 m/s", ["0.000 m/s", ""]))
 
     def test_the_examples_say_what_to_do_without_a_robot(self):
-        for name in ("example_5_operator", "example_5_board_on_sim"):
-            result = subprocess.run([os.environ["EXAMPLE_OPERATOR"].replace("example_5_operator", name)], env=self.environment, text=True,
-                                    capture_output=True, timeout=20)
+        for program in ("EXAMPLE_OPERATOR", "EXAMPLE_BOARD"):
+            result = subprocess.run([os.environ[program]], env=self.environment, text=True, capture_output=True, timeout=20)
             self.assertEqual(result.returncode, 1)
             self.assertIn("no simulator is running", result.stderr)
 
