@@ -107,11 +107,15 @@ std::string start_text(const protocol::Field& field, std::int64_t raw) {
   return text;
 }
 
+void print_comment(std::string_view text) {
+  if (!text.empty()) print_line("      comment   {}\n", prose(text, 16));
+}
+
 /// What the catalogue has not, because no frame needs it.
 void print_facts(const protocol::Field& field, const spec::FieldModel& model) {
   if (model.start) print_line("      start     {}\n", start_text(field, *model.start));
   if (!model.receivers.empty()) print_line("      receivers {}\n", fmt::join(model.receivers, ", "));
-  if (!model.description.empty()) print_line("      comment   {}\n", prose(model.description, 16));
+  print_comment(model.description);
   for (const auto& [name, text] : model.attributes)
     print_line("      attribute {} = {}\n", name, prose(text, 16));
 }
@@ -156,6 +160,39 @@ void message(const spec::Spec& spec, const protocol::Topic& topic) {
   if (!topic.source.empty()) print_line("  source     {}\n", topic.source);
 }
 
+/// Of equal topics, or frames, a spec has one model: that of the one with this index, and whether it is the
+/// first of them.
+template <class Model>
+std::pair<const Model&, bool> model_at(const std::vector<Model>& models, std::size_t index) {
+  auto model = models.begin();
+  for (; index >= model->count; ++model) index -= model->count;
+  return {*model, index == 0};
+}
+
+/// A topic's frames; what the spec says of fields once for equal ones.
+void print_frames(const protocol::Topic& topic, const spec::TopicModel& of) {
+  for (std::size_t i = 0; i < topic.frames.size(); ++i) {
+    const protocol::FrameRef frame{&topic, static_cast<std::uint8_t>(i)};
+    const auto& layout = frame.layout();
+    const auto [model, is_first] = model_at(of.frames, i);
+    print_line("  frame      {}{}id 0x{:02X}, on the bus {:03X} at {} priority, DLC {}\n", layout.name,
+               layout.name.empty() ? "" : ": ", layout.id.value,
+               protocol::identifier_of(frame, topic.priority), name(topic.priority), layout.length);
+    if (is_first && !model.description.empty()) print_line("             {}\n", prose(model.description, 13));
+    const auto values = layout.values();
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      print_field(layout, values[k]);
+      if (!is_first) continue;
+      // Behind each derived field its uncertainty comes, of which there is nothing to say.
+      const std::size_t derived = k - model.fields.size();
+      if (k < model.fields.size())
+        print_comment(model.fields[k].description);
+      else if (derived % 2 == 0)
+        print_comment(model.derived[derived / 2].description);
+    }
+  }
+}
+
 void info(Session& session, const std::string& word) {
   const auto& catalogue = session.catalogue();
   const protocol::Topic* topic = words::find_topic(catalogue, word);
@@ -172,6 +209,9 @@ void info(Session& session, const std::string& word) {
   }
   print_line("{} ({} of {}, id 0x{:02X})\n", topic->name, name(topic->kind), catalogue.board_name(*topic),
              topic->id.value);
+  const auto index = static_cast<std::size_t>(topic - catalogue.topics.data());
+  const spec::TopicModel& model = model_at(session.spec().model().topics, index).first;
+  if (!model.description.empty()) print_line("  comment    {}\n", prose(model.description, 13));
   if (!topic->aliases.empty()) {
     print_line("  aliases    {}\n", fmt::join(topic->aliases, " "));
   }
@@ -185,14 +225,7 @@ void info(Session& session, const std::string& word) {
   } else if (topic->timeout.count() != 0) {
     print_line("  timeout    at rest {} after the last set point\n", words::to_text(topic->timeout));
   }
-  for (std::size_t i = 0; i < topic->frames.size(); ++i) {
-    const protocol::FrameRef frame{topic, static_cast<std::uint8_t>(i)};
-    const auto& layout = frame.layout();
-    print_line("  frame      {}{}id 0x{:02X}, on the bus {:03X} at {} priority, DLC {}\n", layout.name,
-               layout.name.empty() ? "" : ": ", layout.id.value,
-               protocol::identifier_of(frame, topic->priority), name(topic->priority), layout.length);
-    for (const auto& field : layout.values()) print_field(layout, field);
-  }
+  print_frames(*topic, model);
   print_line("  source     {}\n", topic->source);
 }
 

@@ -51,6 +51,18 @@ class Info(Case):
         self.assertIn("id 0x2B, on the bus 72B at low priority, DLC 8\n", out)
         self.assertIn("on the bus 608 at medium priority", self.run_tool("info", "gyro")[0])
 
+    def test_what_topic_and_fields_are_for(self):
+        out, _ = self.run_tool("info", "home")
+        self.assertIn("\n  comment    drives to the nearest wall and stands before it, head on: ", out)
+        self.assertRegex(out, r"\n    distance .*\n      comment   from the wall to the robot's edge, from 0.03 m; 0 with speed 0, its end\n")
+        # Of equal topics and frames, each; of its equal frames a topic says it once.
+        self.assertIn("\n  comment    colour of one of the eight lights of the ring", self.run_tool("info", "led_8")[0])
+        out, _ = self.run_tool("info", "di_wheel_drive_status")
+        for text in ("since the start; stays at its end", "of the CPU, over the last second"):
+            self.assertEqual(out.count(f"      comment   {text}\n"), 1)
+        out, _ = self.run_tool("info", "light_ring_status")  # like that of another board
+        self.assertIn("\n      comment   since the start", out)
+
     def test_what_is_derived(self):
         out, _ = self.run_tool("info", "ring")
         lines = [" ".join(line.split()) for line in out.splitlines()]
