@@ -34,10 +34,10 @@ std::string id_of(const protocol::Topic& topic) {
   return fmt::format("0x{:0{}X}", address.number, address.extended ? 8 : 3);
 }
 
-/// By what its frames are known: of a parameter group that is not the whole identifier.
+/// By what its frames are known: of a parameter group that is not the whole identifier; as --pgn takes it.
 std::string known_by(const protocol::Topic& topic) {
   const auto pgn = pgn_of(topic);
-  return pgn ? fmt::format("PGN {}", *pgn) : id_of(topic);
+  return pgn ? fmt::format("PGN 0x{:04X}", *pgn) : id_of(topic);
 }
 
 /// Of its frames: "8", "8x2" are eight with two bytes each, "8+6" two; "64 FD" one of CAN FD.
