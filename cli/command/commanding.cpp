@@ -7,6 +7,10 @@
 #include "ocm/can/any_text.hpp"
 
 #include "cli/command/operated_bus.hpp"
+#include "cli/command/presence_watch.hpp"
+#include "cli/shared/interrupt.hpp"
+#include "cli/shared/live.hpp"
+#include "cli/shared/messages.hpp"
 #include "cli/shared/outgoing.hpp"
 #include "cli/shared/unhurried_messages.hpp"
 #include "cli/shared/values.hpp"
@@ -44,9 +48,11 @@ void print_frames(const client::Command& command) {
 }
 
 void add_no_confirm(Verb verb, bool& no_confirm) {
-  verb.add_flag("--no-confirm", no_confirm,
-                fmt::format("do not listen for a board's refusal; default: for {} after sending",
-                            words::to_text(client::refusal_patience)));
+  verb.add_flag(
+      "--no-confirm", no_confirm,
+      fmt::format("end when all has left; default: ask whether the board is there, and listen for its "
+                  "refusal for {}",
+                  words::to_text(client::refusal_patience)));
 }
 
 void carry_out(Session& session, const Commanding& commanding, const client::Command& command) {
@@ -57,15 +63,26 @@ void carry_out(Session& session, const Commanding& commanding, const client::Com
   const std::string& verb = commanding.verb();
   const bool guarded = verb == "drive" || verb == "led" || verb == "set";
   const auto bus = guarded ? open_to_command(session, verb) : session.open_bus();
-  RefusalWatch refusals{session.catalogue(), commanding.verb(), commanding.confirm()};
-  refusals.prepare(*bus, frames);
-  Outgoing outgoing{*bus, commanding.verb(), command.ends_hold ? still_moving : ""};
+  RefusalWatch refusals{session.catalogue(), verb, commanding.confirm()};
+  PresenceWatch presence{session.catalogue(), verb, commanding.confirm()};
+  presence.sent(command);
+  refusals.prepare(*bus, frames, presence.questions());
+  Outgoing outgoing{*bus, verb, command.ends_hold ? still_moving : ""};
   command.each_frame([&](const can::AnyFrame& frame) { outgoing.send(frame); });
   outgoing.expect_all_left();
   refusals.sent(frames);
-  refusals.listen(*bus);
+  presence.ask(*bus, outgoing);
+  refusals.listen(*bus, [&](const can::Received& received) { presence.take(received); });
+  Live live{*bus};
+  const Over over = presence.listen(live, [&](const can::Received& received) {
+    presence.take(received);
+    refusals.take(received);
+  });
+  if (over == Over::signal) throw Exit{exit_code_after_interrupt(exit_failure)};
   if (command.ends_hold) refusals.forgive_unserved();
+  const bool silent = presence.tell(command.ends_hold ? still_moving : "");
   refusals.leave_if_refused();
+  if (silent) throw Exit{exit_failure};
 }
 
 void declare_command_verb(Verb verb, Session& session, std::string_view description, std::string_view group,

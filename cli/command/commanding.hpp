@@ -49,8 +49,8 @@ class Commanding {
 /// --no-confirm.
 void add_no_confirm(Verb verb, bool& no_confirm);
 
-/// Sends the command's frames once, or prints them. Leaves through cli::fail unless they left this machine,
-/// and unless no board refuses them.
+/// Sends the command's frames once, or prints them. Leaves with exit_failure, and says why, unless they left
+/// this machine, no board refuses them, and the boards that got set points are there.
 void carry_out(Session& session, const Commanding& commanding, const client::Command& command);
 
 /// Prints a command's frames in candump notation, one a line.

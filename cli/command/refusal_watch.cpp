@@ -58,10 +58,12 @@ Live::Clock::time_point RefusalWatch::until() const {
   return Live::Clock::time_point{time.time_since_epoch()};
 }
 
-void RefusalWatch::listen(transport::Bus& bus) {
+void RefusalWatch::listen(transport::Bus& bus, const std::function<void(const can::Received&)>& beside) {
   if (until() <= Live::Clock::now() || (commanded_ == 1 && !refused_.empty())) return;
-  const Over over = Live{bus}.receive(
-      until(), [this](const can::Received& received) { return !take(received) || commanded_ != 1; });
+  const Over over = Live{bus}.receive(until(), [&](const can::Received& received) {
+    if (beside) beside(received);
+    return !take(received) || commanded_ != 1;
+  });
   // A bus that goes now has carried what was sent; that nothing more is heard of it is no failure of that.
   if (over == Over::signal) throw Exit{exit_code_after_interrupt(exit_failure)};
 }

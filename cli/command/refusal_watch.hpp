@@ -2,6 +2,7 @@
 /// they would accept. Only what was sent is listened for, and only for client::refusal_patience after it.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -38,8 +39,9 @@ class RefusalWatch {
   bool take(const can::Received& received);
   /// Until when it is worth to listen.
   [[nodiscard]] Live::Clock::time_point until() const;
-  /// Listens until then, or until the only board that was spoken to has refused.
-  void listen(transport::Bus& bus);
+  /// Listens until then, or until the only board that was spoken to has refused. `beside` gets each frame,
+  /// too.
+  void listen(transport::Bus& bus, const std::function<void(const can::Received&)>& beside = {});
 
   /// What was refused since the last `tell`.
   [[nodiscard]] const std::vector<client::Refused>& refused() const { return refused_; }

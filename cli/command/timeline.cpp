@@ -35,7 +35,8 @@ Timeline::Timeline(transport::Bus& bus, const protocol::Catalogue& catalogue, st
       other_(catalogue, verb_),
       live_(bus),
       outgoing_(bus, verb_),
-      refusals_(catalogue, verb_, confirm) {}
+      refusals_(catalogue, verb_, confirm),
+      presence_(catalogue, verb_, confirm) {}
 
 Timeline::~Timeline() {
   if (held_ && !rest_after_all() && outgoing_.matters()) remark(fmt::format("{}: {}", verb_, still_moving));
@@ -76,6 +77,7 @@ bool Timeline::wait_for_answer(Clock::time_point end) {
 bool Timeline::take(const can::Received& received) {
   other_.take(received, moving_);
   meet(received.frame);
+  presence_.take(received);
   const bool refused = refusals_.take(received);
   if (on_receive_) on_receive_(received);
   return !refused && !other_.has_stopped() && !other_.has_begun_too();
@@ -136,6 +138,7 @@ void Timeline::carry_out_once(const client::Command& command) {
   if (command.hold && !held_) expect_no_other();
   if (command.hold) outgoing_.otherwise_after_the_next(still_moving);  // a behaviour, too
   if (command.ends_hold) outgoing_.otherwise(still_moving);
+  presence_.sent(command);
   for (const auto& frame : command.frames) send(frame);
   for (const auto& frame : command.fd_frames) send_fd(frame);
 }
@@ -186,17 +189,25 @@ void Timeline::rest() {
 bool Timeline::finish() {
   rest();
   outgoing_.expect_all_left();
-  if (interrupted() == 0)
-    static_cast<void>(live_.receive(refusals_.until(), [this](const can::Received& received) {
+  if (interrupted() == 0) {
+    presence_.ask(*bus_, outgoing_);
+    const auto take = [this](const can::Received& received) {
+      const bool own = presence_.take(received);
       refusals_.take(received);
-      if (on_receive_) on_receive_(received);
+      if (on_receive_ && !own) on_receive_(received);
+    };
+    static_cast<void>(live_.receive(refusals_.until(), [&](const can::Received& received) {
+      take(received);
       return true;
     }));
+    static_cast<void>(presence_.listen(live_, take));
+  }
   tell_refusals();
-  if (answer_is_due_) other_.tell_unanswered();
+  const bool silent = presence_.tell();
+  if (answer_is_due_ && !silent) other_.tell_unanswered();
   other_.sum_up();
   tell_unsent();
-  return !refused_ && broadcasts_.counts().met == 0;
+  return !refused_ && !silent && broadcasts_.counts().met == 0;
 }
 
 void Timeline::tell_unsent() {
@@ -438,6 +449,7 @@ bool Timeline::wait_for_step(Clock::time_point due) {
 void Timeline::expect_awake() {
   look_at_clock();
   if (stood_still_ < client::longest_without_set_point) return;
+  presence_.waive();  // an error, with or without an answer
   static_cast<void>(finish());
   fail({fmt::format("{}: this program did not run for {}, so no further command is sent", verb_,
                     words::to_text(std::chrono::duration_cast<std::chrono::milliseconds>(stood_still_))),

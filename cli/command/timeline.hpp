@@ -28,6 +28,7 @@
 #include "cli/command/broadcasts.hpp"
 #include "cli/command/guarded.hpp"
 #include "cli/command/other_commander.hpp"
+#include "cli/command/presence_watch.hpp"
 #include "cli/command/refusal_watch.hpp"
 #include "cli/shared/live.hpp"
 #include "cli/shared/outgoing.hpp"
@@ -65,7 +66,10 @@ class Timeline {
   /// What is sent next has a board drive by itself, which no watchdog ends.
   void expect_motion() { outgoing_.otherwise_after_the_next(still_travelling); }
   /// The caller says itself that the board is silent: finish() does not.
-  void leave_silence_to_caller() { answer_is_due_ = false; }
+  void leave_silence_to_caller() {
+    answer_is_due_ = false;
+    presence_.waive();
+  }
   /// Leaves if another program that commands the motors was heard, where one is refused. Before a hold that
   /// may begin later; `carry_out` looks, too.
   void expect_no_other();
@@ -90,9 +94,10 @@ class Timeline {
   [[nodiscard]] bool wait_for_end();
   /// Ends a hold: sends the set point of rest. Nothing without a hold.
   void rest();
-  /// rest(), and what was sent has left; leaves through cli::fail, loudly, if not. Then listens for the
-  /// refusal of what was sent last, unless a signal came. False: a board has refused something, or another
-  /// node has broadcast beside a message of several frames, which was said.
+  /// rest(), and what was sent has left; leaves through cli::fail, loudly, if not. Then, unless a signal
+  /// came, listens for the refusal of what was sent last, and asks the boards that got set points and have
+  /// sent nothing. False, which was said: a board has refused something or does not answer, or another node
+  /// has broadcast beside a message of several frames.
   [[nodiscard]] bool finish();
 
  private:
@@ -173,6 +178,7 @@ class Timeline {
   Live live_;
   Outgoing outgoing_;
   RefusalWatch refusals_;
+  PresenceWatch presence_;
   bool refused_ = false;
   /// Frames that were sent since the last set point: a queue keeps the order, so that it has left once no
   /// more than they wait.

@@ -127,6 +127,7 @@ int end_all(Session& session, const BehaveOptions& options) {
                       heard = heard || sensor.active_in(index, received.frame).has_value();
                     }};
   timeline.carry_out_once(command);
+  timeline.leave_silence_to_caller();
   if (!timeline.finish()) return exit_failure;
   for (const auto end = Clock::now() + told_after; !heard && Clock::now() < end;)
     if (!timeline.wait(std::min(end, Clock::now() + look_again)))

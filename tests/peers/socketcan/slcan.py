@@ -81,7 +81,7 @@ def _(context):
     with open(script, 'w') as file:
         file.writelines(f'0s led {i % 8 + 1} {colour}\n' for i, colour in enumerate(colours))
     with Relay(context) as relay, Candump(relay.name) as judge:
-        tool(context, relay, 'run', script)
+        tool(context, relay, 'run', script, '--no-confirm')  # no board is there
         tool(context, relay, 'send', '1F334455#1122334455667788')
         tool(context, relay, 'send', '605#R8')
         seen = [f'{frame.id}#{frame.data}' for frame in judge.finish()]

@@ -15,13 +15,15 @@ from harness import (Adapter, Candump, Process, Vcan, as_nobody, check, equal, e
                      forbid_can_sockets, sh)
 
 # The thesis's standalone demo [Thesis 6.3, in the order of its timing diagram], as it must come on the bus:
-# second, frame. A drive is one frame here; its repeats are looked at by themselves. Before it the board is asked what it does by itself.
+# second, frame. A drive is one frame here; its repeats are looked at by themselves. Before it the board is asked what it does by itself,
+# and behind all of it, whether the lights' board is there, of which nothing was heard.
 STANDALONE = [
     (1, '209#01F40100'), (5, '21F#01E80300'), (10, '21E#02'), (15, '208#01881300'), (16, '21F#00'),
     (17, '205#01200300'), (18, '209#00'), (21, '203#01840300'),
     (22.9, '20D#02'), (23, '201#50C3000000000000'), (25, '23C#FFFFFF'),
     (27, '201#0000000000000000'), (30, '203#00'), (31, '208#00'), (32, '21E#02'), (33, '204#01D00700'),
-    (35, '205#00'), (38, '204#00'), (40, '23D#FFFFFF'), (40, '23F#FFFFFF'), (40, '241#FFFFFF'), (40, '243#FFFFFF')]
+    (35, '205#00'), (38, '204#00'), (40, '23D#FFFFFF'), (40, '23F#FFFFFF'), (40, '241#FFFFFF'), (40, '243#FFFFFF'),
+    (40, '357#02')]
 # What the sensors must answer: frames of a sample (identifier, length), first second, last, period. One sample at
 # once, then one a period until the stop; one that falls on the stop itself may come or not.
 ANSWERS = {
@@ -109,7 +111,7 @@ def compare_commands(frames, held_up):
 
 def compare_answers(frames, came, held_up):
     """Each sensor's samples: how many, when, whole and back to back. A board counts its periods from the request on, as it came."""
-    known = {'61E', '60D'}
+    known = {'61E', '60D', '757', '758'}
     for name, (parts, first, last, period) in ANSWERS.items():
         first, last = came[first], came[last]
         ids = [number for number, _ in parts]
@@ -139,6 +141,7 @@ def compare_answers(frames, came, held_up):
     equal([round(at - came[when]) for at, when in zip(power, (10, 32))], [0] * len(power), 'power: when')
     equal(len(power), 2, 'power: once, twice')
     equal(len([frame for frame in frames if frame.id == '60D']), 1, 'what the board does by itself, before the drive')
+    equal([frame.id for frame in frames if frame.id in ('757', '758')], ['757', '758'], "the lights' board, behind it")
     unknown = {frame.id for frame in frames if int(frame.id, 16) & 0x400} - known
     expect(not unknown, f'frames without a request: {unknown}')
 

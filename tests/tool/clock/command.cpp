@@ -68,14 +68,10 @@ class Run {
   void go() {
     const auto command = drive(lasting_);
     set_point_ = command.frames.front();
+    confirm_ = world_.chance(0.5) ? cli::Confirm::yes : cli::Confirm::no;
     bool left = false;
     try {
-      Timeline timeline{*bus_,
-                        amiro::catalogue,
-                        "drive",
-                        Timeline::Others::refused,
-                        world_.chance(0.5) ? cli::Confirm::yes : cli::Confirm::no,
-                        {}};
+      Timeline timeline{*bus_, amiro::catalogue, "drive", Timeline::Others::refused, confirm_, {}};
       if (timeline.listen_first()) {
         begun_ = world_.now();
         timeline.carry_out(command);
@@ -96,7 +92,12 @@ class Run {
 
  private:
   void judge(bool left) {
-    const auto sent = after_question(bus_->sent());
+    auto sent = after_question(bus_->sent());
+    // Behind all of it, whether the board is there; a drive that a signal ends does not ask.
+    if (!sent.empty() && sent.back().frame == status_question()) {
+      CHECK((confirm_ == cli::Confirm::yes && whole_ && !left));
+      sent.pop_back();
+    }
     for (const auto& each : sent) CHECK((each.frame == set_point_ || cli::is_rest(each.frame)));
     const bool gone = ended_ >= bus_->conditions().gone;
     judge_end(sent, gone, left);
@@ -149,6 +150,8 @@ class Run {
   void judge_calm(const std::vector<PlayedBus::Sent>& sent, bool left) {
     CHECK(!left);
     if (sent.empty()) return;
+    const bool asks = bus_->sent().back().frame == status_question();
+    if (confirm_ == cli::Confirm::yes && whole_ && world_.signal_at() > ended_) CHECK(asks);
     CHECK(bus_->sent().front().frame == question());
     const Moment end = std::min(lasting_ > 0s ? begun_ + lasting_ : Moment::max(), world_.signal_at());
     CHECK(whole_ == (world_.signal_at() > begun_ + lasting_ && lasting_ > 0s));
@@ -169,6 +172,7 @@ class Run {
   Duration lasting_;
   std::optional<PlayedBus> bus_;
   can::Frame set_point_;
+  cli::Confirm confirm_{};
   bool calm_ = true;
   bool others_ = false;
   bool whole_ = false;

@@ -1,8 +1,10 @@
-/// Before a program commands the motors it may ask, once, what the boards do by themselves.
+/// Before a program commands the motors it may ask, once, what the boards do by themselves; behind all that
+/// it has commanded, whether the wheels' board is there.
 #pragma once
 
 #include <vector>
 
+#include "ocm/protocol/request.hpp"
 #include "ocm/topics/amiro.hpp"
 
 #include "cli/shared/behaviour_sensor.hpp"
@@ -13,6 +15,11 @@ namespace ocm::test {
 /// The request for one sample of the sensor `behaviour`.
 inline can::Frame question() {
   return cli::BehaviourSensor{amiro::catalogue}.request();
+}
+
+/// The request for one sample of its status.
+inline can::Frame status_question() {
+  return protocol::once(amiro::DiWheelDriveStatus::id, amiro::DiWheelDriveStatus::priority);
 }
 
 /// All that was sent but one question, which comes before everything else. A second one, or a later one, is

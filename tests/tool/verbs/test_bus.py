@@ -452,7 +452,7 @@ class Scripts(Case):
         shown = [run.stdout.readline()]
         # Of another program: a request, and a set point of an LED.
         self.run_tool("publish", "odom", "100ms")
-        self.run_tool("led", "1", "red")
+        self.run_tool("led", "1", "red", "--no-confirm")
         while len(shown) < 100 and '"odometry"' not in shown[-1]:
             shown.append(run.stdout.readline())
         shown += self.interrupt(run)[0].splitlines()

@@ -107,7 +107,7 @@ class OnARobotThatRefuses(WithAdapter, Case):
         _, err = self.run_tool(*bus, "run", path, code=1)
         self.assertIn("run: di_wheel_drive refuses magnetometer: not_schedulable", err)
         self.assertLess(err.index("refuses"), err.index("led 1 red"))  # at once, not at the end
-        self.assertEqual(self.played.frames, ["205#01840302", "23C#FF0000"])
+        self.assertEqual(self.played.frames, ["205#01840302", "23C#FF0000", "357#02"])  # and whether the lights' board is there
         self.run_tool(*bus, "run", path, "--no-confirm")
         # Also of the last step, after which there is nothing else to wait for.
         bus = self.robot({"23C#FF0000": [refusal(0x3C, BAD_LENGTH, LIGHT_RING)]})

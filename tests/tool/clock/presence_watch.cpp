@@ -1,0 +1,148 @@
+// Whom a verb asks whether it is there, how long it waits for that, and what it says.
+#include "cli/command/presence_watch.hpp"
+
+#include <string>
+#include <vector>
+
+#include "ocm/can/text.hpp"
+#include "ocm/topics/amiro.hpp"
+
+#include "tests/tool/captured.hpp"
+#include "tests/tool/clock/played_bus.hpp"
+
+namespace tool_clock_presence_watch_test {
+
+using namespace ocm;
+using namespace ocm::test;
+using cli::Confirm;
+using cli::Over;
+using cli::PresenceWatch;
+
+can::Frame frame(std::string_view text) {
+  const auto parsed = can::parse_frame(text);
+  REQUIRE(parsed.ok());
+  return *parsed;
+}
+
+constexpr const char* light = "23C#010203";
+constexpr const char* motors = "201#0100000000000000";
+// The first frame of a board's status, and another sample of the wheels' board. [spec/topics.json]
+constexpr const char* light_status = "757#0500000175B906B2";
+constexpr const char* wheels_refusal = "71D#0108010000000000";
+
+/// A watch and a bus on which frames come at their times.
+struct Bench {
+  using Frames = std::vector<std::pair<Duration, const char*>>;
+  explicit Bench(const Frames& frames, Confirm confirm = Confirm::yes) : Bench(conditions(frames), confirm) {}
+  explicit Bench(PlayedBus::Conditions conditions, Confirm confirm = Confirm::yes)
+      : bus(world, std::move(conditions)), watch(amiro::catalogue, "led", confirm) {}
+
+  /// Asks after these have left, and listens; when it ends, in ms from the start.
+  std::int64_t listens(const std::vector<const char*>& sent, bool ends_hold = false) {
+    client::Command command;
+    command.ends_hold = ends_hold;
+    for (const char* const text : sent) command.frames.push_back(frame(text));
+    watch.sent(command);
+    cli::Outgoing outgoing{bus, "led"};
+    watch.ask(bus, outgoing);
+    cli::Live live{bus};
+    over = watch.listen(
+        live, [this](const can::Received& received) { ++(watch.take(received) ? answers : others); });
+    return (world.now() - World::start) / 1ms;
+  }
+  std::vector<std::string> asked() {
+    std::vector<std::string> all;
+    for (const auto& sent : bus.sent()) all.emplace_back(can::to_text(sent.frame).view());
+    return all;
+  }
+  std::string tells(std::string_view otherwise = {}) {
+    Captured said{STDERR_FILENO};
+    const bool any = watch.tell(otherwise);
+    return (any ? "true: " : "false: ") + said.text();
+  }
+  static PlayedBus::Conditions conditions(const Frames& frames) {
+    PlayedBus::Conditions conditions;
+    for (const auto& [at, text] : frames) conditions.incoming.push_back({World::start + at, frame(text)});
+    return conditions;
+  }
+
+  World world{1};
+  PlayedBus bus;
+  PresenceWatch watch;
+  Over over = Over::enough;
+  int answers = 0;
+  int others = 0;
+};
+
+TEST_CASE("presence: a board that answers is there, however late within two seconds") {
+  Bench bench{{{10ms, wheels_refusal}, {1900ms, light_status}, {1950ms, light_status}}};
+  CHECK(bench.listens({light}) == 1900);
+  CHECK(bench.asked() == std::vector<std::string>{"357#02"});
+  CHECK(bench.answers == 1);
+  CHECK(bench.others == 1);
+  CHECK(bench.tells() == "false: ");
+}
+
+TEST_CASE("presence: a board that does not is named, with what that means for the robot") {
+  Bench bench{{{10ms, wheels_refusal}}};
+  CHECK(bench.listens({light}) == 2000);
+  CHECK(
+      bench.tells() ==
+      "true: amiroctl: led: light_ring does not answer, so nothing shows that it has done it\n"
+      "          is it powered and on can0? `amiroctl doctor` says which boards are there; --no-confirm does "
+      "not ask\n");
+  Bench both{Bench::Frames{}};
+  CHECK(both.listens({light, motors, light}) == 2000);
+  CHECK(both.asked() == std::vector<std::string>{"31B#02", "357#02"});
+  CHECK(both.tells("IT MAY MOVE") ==
+        "true: amiroctl: led: di_wheel_drive and light_ring do not answer, so nothing shows that they have "
+        "done it; IT MAY MOVE\n"
+        "          are they powered and on can0? `amiroctl doctor` says which boards are there; --no-confirm "
+        "does not ask\n");
+}
+
+TEST_CASE("presence: of a stop the wheels' board is asked alone") {
+  Bench bench{Bench::Frames{}};
+  CHECK(bench.listens({"201#0000000000000000", "23C#000000"}, true) == 2000);
+  CHECK(bench.asked() == std::vector<std::string>{"31B#02"});
+}
+
+TEST_CASE("presence: a board that was heard is not asked") {
+  Bench bench{Bench::Frames{}};
+  bench.watch.take({{}, frame(light_status)});
+  CHECK(bench.listens({light}) == 0);
+  CHECK(bench.asked().empty());
+  CHECK(bench.tells() == "false: ");
+}
+
+TEST_CASE("presence: with --no-confirm, or a caller that says it, none is asked") {
+  Bench unconfirmed{Bench::Frames{}, Confirm::no};
+  Bench waived{Bench::Frames{}};
+  waived.watch.waive();
+  for (Bench* const bench : {&unconfirmed, &waived}) {
+    CHECK(bench->listens({light}) == 0);
+    CHECK(bench->watch.questions().empty());
+    CHECK(bench->asked().empty());
+    CHECK(bench->tells() == "false: ");
+  }
+}
+
+TEST_CASE("presence: of a simulated bus that goes, or one that takes no request, nothing is known") {
+  for (const bool is_simulated : {true, false}) {
+    PlayedBus::Conditions goes;
+    goes.gone = World::start + 300ms;
+    goes.is_simulated = is_simulated;
+    Bench gone{goes};
+    CHECK(gone.listens({light}) == 300);
+    CHECK(gone.over == Over::gone);
+    CHECK((gone.tells() == "false: ") == is_simulated);
+  }
+  PlayedBus::Conditions full;
+  full.room = 0;
+  Bench deaf{full};
+  CHECK(deaf.listens({light}) / 100 == 10);  // a second, in which a queue empties
+  CHECK(deaf.asked().empty());
+  CHECK(deaf.tells() == "false: ");
+}
+
+}  // namespace tool_clock_presence_watch_test
