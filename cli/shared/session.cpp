@@ -16,6 +16,7 @@
 #include "cli/shared/buses.hpp"
 #include "cli/shared/config.hpp"
 #include "cli/shared/memory.hpp"
+#include "cli/shared/output_file.hpp"
 #include "cli/shared/spec_word.hpp"
 #include "generator/robot_spec.hpp"
 #include "generator/spec/merge.hpp"
@@ -132,6 +133,10 @@ const protocol::Catalogue& Session::catalogue_on_bus(bool opens_bus) {
     spec_on_bus_ = std::make_unique<spec::Spec>(std::move(model));
   }
   return spec_on_bus_->catalogue();
+}
+
+void Session::keep_specs(std::string_view verb, const std::string& output) const {
+  for (const std::string& word : spec_files) refuse_same_file(verb, parse_spec_word(word).file, output);
 }
 
 std::string Session::narrow_to_bus(std::string_view verb, const std::string& bus) {

@@ -39,6 +39,8 @@ class Session {
   /// where there are several, or none for it. To be called before anything of the spec is asked for. Returns
   /// the bus; empty: no interface is named, and none is chosen.
   [[nodiscard]] std::string narrow_to_bus(std::string_view verb, const std::string& bus);
+  /// exit_usage where the output is a file of --spec: it cannot be made again.
+  void keep_specs(std::string_view verb, const std::string& output) const;
   /// Of a verb that is about one bus which has no name: exit_usage where --spec names interfaces.
   void refuse_interfaces(std::string_view verb);
 

@@ -40,6 +40,7 @@ void convert(Session& session, const ConvertOptions& options, int& exit_code) {
   const logs::LogFormat& format = logs::format_to_write("convert", options.out, options.to);
   catch_interrupts();
   refuse_same_file("convert", options.in, options.out);
+  session.keep_specs("convert", options.out);
   logs::OpenedLog in{options.in, options.from, session.catalogue()};
   auto out = logs::LogFile::create(options.out, format, session.catalogue(),
                                    options.force ? logs::Existing::overwrite : logs::Existing::refuse);

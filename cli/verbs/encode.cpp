@@ -27,6 +27,7 @@ struct EncodeOptions {
 void encode(Session& session, const EncodeOptions& options, int& exit_code) {
   const auto& format = logs::format_to_write("encode", options.out, options.to, "candump");
   refuse_same_file("encode", options.in, options.out);
+  session.keep_specs("encode", options.out);
   catch_interrupts();
   FrameLines lines{options.in, session.catalogue(), options.keep_going,
                    options.force ? logs::Values::of_bits : logs::Values::as_stated};

@@ -62,7 +62,7 @@ void generate_file(Session& session, const GenerateOptions& options) {
                             : "topics are in the spec already"});
   for (const std::string& what : generate::left_out(*target, model))
     remark(fmt::format("generate {}: left out: {}", target->name, what));
-  for (const std::string& file : session.spec_files) refuse_same_file("generate", file, options.output);
+  session.keep_specs("generate", options.output);
   const std::string text = target->make(model, how);
   write_file(options.output, text);
 }

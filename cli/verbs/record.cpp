@@ -213,6 +213,7 @@ std::uint64_t summarise(const record::Recorder& recorder, const record::Files& f
 void run_record(Session& session, const RecordOptions& options, int& exit_code) {
   const auto& catalogue = session.catalogue();
   auto chosen = file_options(options, catalogue);
+  session.keep_specs("record", chosen.path);
   const bool live = is_live(chosen.path);
   const auto& format = *chosen.format;
   const ChosenFilters filters{options, catalogue};

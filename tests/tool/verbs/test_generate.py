@@ -36,14 +36,21 @@ class Generate(harness.Case):
             self.assertTrue(file.read().startswith("VERSION"))
         self.assertEqual(os.listdir(self.folder), ["amiro.dbc"])
 
-    def test_what_is_generated_does_not_replace_its_spec(self):
+    def test_no_output_replaces_the_spec(self):
         path = os.path.join(self.folder, "car.dbc")
         with open(CAR, "rb") as file:
             text = file.read()
         with open(path, "wb") as file:
             file.write(text)
-        _, err = self.run_tool("--spec", path, "generate", "dbc", "-o", path, code=2)
-        self.assertIn("are the same file\n", err)
+        log = os.path.join(self.folder, "drive.log")
+        with open(log, "w", encoding="ascii") as file:
+            file.write("(1.000000) can0 123#11\n")
+        for words in (("generate", "dbc", "-o", path), ("convert", log, path, "--to", "candump", "--force"),
+                      ("encode", log, "-o", path, "--to", "candump", "--force"),
+                      ("record", "-o", path, "--to", "candump", "--force")):
+            for spec in (path,) if words[0] == "generate" else (path, f"can0={path}"):  # which is about no bus
+                _, err = self.run_tool("--spec", spec, "--bus", "can0", *words, code=2)
+                self.assertIn(f"amiroctl: {words[0]}: {path} and {path} are the same file\n", err, words)
         with open(path, "rb") as file:
             self.assertEqual(file.read(), text)
 
