@@ -100,11 +100,10 @@ struct LogFile::State {
       made_now = descriptor >= 0;
       // A link to no file is one that is there: nothing is made behind it that was not asked for.
       const int again = existing == Existing::refuse ? how & ~O_CREAT : how;
-      if (!made_now && errno == EEXIST) descriptor = ::open(path.c_str(), again, all_users);
+      if (!made_now && errno == EEXIST) descriptor = open_again(again, all_users);
     }
     struct stat status {};
     if (descriptor < 0 || ::fstat(descriptor, &status) != 0) {
-      // A FIFO is open once it has a reader.
       if (errno == EINTR && interrupted() != 0) throw Exit{exit_code_after_interrupt(exit_failure)};
       failed("write");
       return refuse({failure.what, "name a folder that exists and can be written to"});
@@ -119,6 +118,20 @@ struct LogFile::State {
     if (!made_now && existing == Existing::refuse) return refuse(exists_failure(path));
     made_now = made_now || existing == Existing::claimed;
     return true;
+  }
+
+  /// What is there. A FIFO is open once it has a reader, which is waited for, in words.
+  [[nodiscard]] int open_again(int how, ::mode_t all_users) const {
+    const int opened = ::open(path.c_str(), how | O_NONBLOCK, all_users);
+    if (opened >= 0) {
+      ::fcntl(opened, F_SETFL, ::fcntl(opened, F_GETFL) & ~O_NONBLOCK);
+      return opened;
+    }
+    struct stat status {};
+    if (errno != ENXIO || ::stat(path.c_str(), &status) != 0) return opened;
+    if (S_ISFIFO(status.st_mode))
+      remark(fmt::format("{} is a pipe without a reader: one is waited for", path));
+    return ::open(path.c_str(), how, all_users);
   }
 
   /// Whether the disk has room for so much beside what is in the file, or cannot say: takes it for a moment.

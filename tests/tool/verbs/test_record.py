@@ -301,6 +301,19 @@ class Recording(Case):
         with open(self.path("own_001.log")) as file:
             self.assertEqual(file.read(), "of another program")
 
+    def test_a_pipe_without_a_reader_is_waited_for_in_words(self):
+        self.start_sim()
+        pipe = self.path("live.log")
+        os.mkfifo(pipe)
+        recorder = self.start("record", "-o", pipe, "-n", "1")
+        self.assertIn("bus: ", recorder.stderr.readline())
+        self.assertEqual(recorder.stderr.readline(), f"{pipe} is a pipe without a reader: one is waited for\n")
+        with open(pipe, encoding="ascii") as reader:
+            self.assertIn("recording to ", recorder.stderr.readline())
+            self.send_numbered(1)
+            self.assertRegex(reader.read(), r"^\(.*#.*\n$")
+        self.assertEqual((recorder.communicate(timeout=60), recorder.returncode)[1], 0)
+
     def test_pipes_and_dead_links_with_the_next_number_are_passed_over(self):
         self.start_sim()
         self.run_tool("publish", "gyro", "10ms")

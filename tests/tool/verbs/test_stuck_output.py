@@ -59,7 +59,8 @@ class StuckOutput(Case):
             self.wait_for_handler(process)
             waiting.until_asleep(process.pid)
             process.send_signal(number)
-            self.assertEqual((process.communicate(timeout=60)[1], process.returncode), ("", 128 + number))
+            said = f"{pipe} is a pipe without a reader: one is waited for\n"
+            self.assertEqual((process.communicate(timeout=60)[1], process.returncode), (said, 128 + number))
 
     def test_a_reader_that_stands_still(self):
         self.start_sim()
