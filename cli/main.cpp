@@ -99,7 +99,7 @@ int run(int argc, char** argv) {
                   "`amiroctl VERB --help` shows a verb's options and examples.",
                   "begin with a simulated robot, and try the others in another terminal:\n"
                   "  amiroctl sim\n"
-                  "  amiroctl once power --wait\n"
+                  "  amiroctl once power\n"
                   "  amiroctl listen\n"
                   "`amiroctl --help` lists all verbs"};
   Session session;

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <utility>
@@ -209,6 +210,13 @@ void info(Session& session, const std::string& word) {
   }
   print_line("{} ({} of {}, id 0x{:02X})\n", topic->name, name(topic->kind), catalogue.board_name(*topic),
              topic->id.value);
+  if (!topic->group.empty()) {
+    const auto is_alike = [topic](const protocol::Topic& other) { return other.group == topic->group; };
+    const auto& topics = catalogue.topics;
+    print_line("  group      {} to {}, which are alike\n",
+               std::find_if(topics.begin(), topics.end(), is_alike)->name,
+               std::find_if(topics.rbegin(), topics.rend(), is_alike)->name);
+  }
   const auto index = static_cast<std::size_t>(topic - catalogue.topics.data());
   const spec::TopicModel& model = model_at(session.spec().model().topics, index).first;
   if (!model.description.empty()) print_line("  comment    {}\n", prose(model.description, 13));

@@ -139,6 +139,9 @@ class CommandParser {
         return WordError{line.size(), "missing " + std::string{word}, usage(line[0])};
     }
     if (form.empty() || line.size() <= count) return {};
+    if (form.find("TOPIC") != std::string_view::npos && find_topic(*catalogue_, line[2]) != nullptr)
+      return WordError{2, detail::quoted(line[2]) + " is a second topic",
+                       "one topic a command: give one for each"};
     const std::string whole = any_apart(line.first(count + 1), time_or_speed_apart);
     return WordError{count, "unexpected argument " + detail::quoted(line[count]),
                      whole.empty() ? usage(line[0]) : "write it as one word, " + whole};
@@ -179,10 +182,14 @@ class CommandParser {
     }
     const std::string_view word = line[2];
     const auto period = parse_duration(word);
-    if (period.error == base::Error::bad_unit)
+    if (period.error == base::Error::bad_unit) {
+      if (const auto of_rate = period_of_rate(word))
+        return WordError{2, detail::quoted(word) + " is a rate",
+                         "write its period, " + to_text(protocol::Period::nearest(*of_rate))};
       return WordError{
           2, detail::quoted(word) + (lacks_unit(word) ? " needs a unit: us, ms or s" : " is in another unit"),
           "write 500ms, 2s or 900us"};
+    }
     if (period.error == base::Error::bad_syntax)
       return WordError{2, detail::quoted(word) + " is not a period", "write 500ms, 2s or 900us"};
     const auto wire =
@@ -362,6 +369,9 @@ class CommandParser {
       if (options.every && target.role == protocol::Role::drive)
         return WordError{0, std::string{target.name} + " is not set again and again",
                          "use drive, which ends with a set point of zero"};
+      if (options.every && target.timeout > client::longest_watchdog)
+        return WordError{0, std::string{target.name} + " is not set again and again",
+                         "each set point begins it again, and it goes on without this program: set it once"};
       std::vector<std::int64_t> raw(given->size());
       for (std::size_t i = 0; i < raw.size(); ++i)
         if ((*given)[i]) raw[i] = (*given)[i]->raw;

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -233,6 +234,15 @@ template <typename Words, typename Apart>
   for (std::size_t i = 1; i < words.size(); ++i)
     if (std::string whole = apart(words[i - 1], words[i]); !whole.empty()) return whole;
   return {};
+}
+
+/// The period of "20Hz" or "1.5kHz", to a nanosecond; nothing where it is no rate, or one above 1 GHz.
+[[nodiscard]] inline std::optional<base::Duration> period_of_rate(std::string_view text) {
+  const auto quantity = parse_quantity(text);
+  if (!quantity || (quantity->unit != "Hz" && quantity->unit != "kHz")) return std::nullopt;
+  const double rate = quantity->number.as_double() * (quantity->unit == "kHz" ? 1e3 : 1);
+  if (!(rate >= 1e-9 && rate <= 1e9)) return std::nullopt;
+  return base::Duration{static_cast<std::int64_t>(1e9 / rate + 0.5)};
 }
 
 /// What `text` is in place of the time that was expected: `otherwise`, unless it is one but for its unit.

@@ -11,6 +11,8 @@
 #include <vector>
 
 #include "ocm/base/text.hpp"
+#include "ocm/can/frame.hpp"
+#include "ocm/protocol/identifier.hpp"
 #include "ocm/protocol/topic.hpp"
 
 #include "cli/words/suggestion.hpp"
@@ -80,8 +82,32 @@ namespace ocm::cli::words {
   return "it is a field of " + topics + ": " + example;
 }
 
-/// What to say of a word that is no topic: it may be a number that lacks its 0x, hexadecimal or decimal, or
-/// one of a topic's fields; else as of any mistyped word.
+/// "it is the identifier of a sample of gyroscope", for one as candump shows it; empty: of none.
+[[nodiscard]] inline std::string whose_identifier(const protocol::Catalogue& catalogue,
+                                                  std::string_view word) {
+  const bool marked = word.starts_with("0x") || word.starts_with("0X");
+  const auto number = base::parse_unsigned(word.substr(marked ? 2 : 0), 16);
+  if (!number || *number <= 0xFF || *number > can::max_base_id) return {};
+  const auto id = protocol::Identifier::decode(static_cast<std::uint32_t>(*number));
+  for (const auto& topic : catalogue.topics) {
+    if (topic.is_message()) continue;
+    const bool sensor = topic.kind == protocol::Kind::sensor;
+    const bool asked = sensor && id.direction == protocol::Direction::command && id.topic == topic.id;
+    const bool sent = sensor == (id.direction == protocol::Direction::sensor) &&
+                      std::any_of(topic.frames.begin(), topic.frames.end(),
+                                  [&id](const protocol::FrameLayout& frame) { return frame.id == id.topic; });
+    if (!asked && !sent) continue;
+    return std::string{"it is the identifier of "} +
+           (asked    ? "a request to "
+            : sensor ? "a sample of "
+                     : "a set point of ") +
+           std::string{topic.name};
+  }
+  return {};
+}
+
+/// What to say of a word that is no topic: it may be a number that lacks its 0x, hexadecimal or decimal, one
+/// of a topic's fields, or an identifier of the bus; else as of any mistyped word.
 [[nodiscard]] inline std::string topic_suggestion(const protocol::Catalogue& catalogue, std::string_view word,
                                                   std::optional<protocol::Kind> kind = {}) {
   for (const unsigned radix : {16U, 10U}) {
@@ -95,6 +121,7 @@ namespace ocm::cli::words {
     return "did you mean '" + std::string{id.view()} + "' (" + std::string{topic->name} + ")?";
   }
   if (std::string field = whose_field(catalogue, word); !field.empty()) return field;
+  if (std::string of = whose_identifier(catalogue, word); !of.empty()) return of;
   const auto words = topic_words(catalogue, kind);
   if (words.empty()) return "the spec has none: --spec or AMIROCTL_SPEC names another";
   return suggestion(word, words);

@@ -36,6 +36,9 @@ inline constexpr base::Duration hold_period{100'000'000};
 /// After this long without a set point a board's watchdog stops the motors, and a program that holds one must
 /// not go on as if nothing had been. [spec/topics.json: watchdog of motors, 500 ms]
 inline constexpr base::Duration longest_without_set_point{500'000'000};
+/// What goes on longer than this without a set point, such as a travel, goes on without the program that gave
+/// it, and must be ended. [decided]
+inline constexpr base::Duration longest_watchdog{2'000'000'000};
 /// How long a program listens for the set points of another one before it sends its first: a program that
 /// holds one repeats it within this time, late as it may be by half a period. [decided]
 inline constexpr base::Duration listen_before_hold{150'000'000};

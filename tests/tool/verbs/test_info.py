@@ -56,12 +56,24 @@ class Info(Case):
         self.assertIn("\n  comment    drives to the nearest wall and stands before it, head on: ", out)
         self.assertRegex(out, r"\n    distance .*\n      comment   from the wall to the robot's edge, from 0.03 m; 0 with speed 0, its end\n")
         # Of equal topics and frames, each; of its equal frames a topic says it once.
-        self.assertIn("\n  comment    colour of one of the eight lights of the ring", self.run_tool("info", "led_8")[0])
+        for word, name in (("led", "led_1"), ("led_8", "led_8")):
+            out, _ = self.run_tool("info", word)
+            self.assertTrue(out.startswith(f"{name} (actuator of light_ring"), out)
+            self.assertIn("\n  group      led_1 to led_8, which are alike\n", out)
+            self.assertIn("\n  comment    colour of one of the eight lights of the ring\n", out)
         out, _ = self.run_tool("info", "di_wheel_drive_status")
         for text in ("since the start; stays at its end", "of the CPU, over the last second"):
             self.assertEqual(out.count(f"      comment   {text}\n"), 1)
         out, _ = self.run_tool("info", "light_ring_status")  # like that of another board
         self.assertIn("\n      comment   since the start", out)
+
+    def test_an_identifier_of_the_bus_is_no_number_of_a_topic(self):
+        for word, what in (("0x608", "a sample of gyroscope"), ("608", "a sample of gyroscope"), ("0x208", "a request to gyroscope"),
+                           ("0x201", "a set point of motors"), ("0x603", "a sample of odometry"), ("0x61F", "a sample of proximity_ring")):
+            _, err = self.run_tool("info", word, code=2)
+            self.assertIn(f"info: no topic '{word}'\n          it is the identifier of {what}\n", err)
+        for word in ("0x2FF", "0x888", "0x201 "):
+            self.assertNotIn("identifier of", self.run_tool("info", word, code=2)[1])
 
     def test_what_is_derived(self):
         out, _ = self.run_tool("info", "ring")

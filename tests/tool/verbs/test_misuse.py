@@ -166,6 +166,18 @@ publish gyro --priorty low
 publish: unknown option '--priorty'
 did you mean '--priority'?
 
+publish gyro mag 500ms
+publish: 'mag' is a second topic
+one topic a command: give one for each
+
+publish gyro 20Hz
+publish: '20Hz' is a rate
+write its period, 50ms
+
+publish gyro 1.5kHz
+publish: '1.5kHz' is a rate
+write its period, 667us
+
 publish gyro 1s 2s
 publish: unexpected argument '2s'
 usage: amiroctl publish TOPIC [PERIOD]
@@ -230,9 +242,17 @@ stop gyro --dryrun
 stop: unknown option '--dryrun'
 did you mean '--dry-run'?
 
-stop gyro odom
-stop: unexpected argument 'odom'
+set travel distance=10cm angle=0rad speed=10cm/s --every 500ms
+set: travel is not set again and again
+each set point begins it again, and it goes on without this program: set it once
+
+stop gyro now
+stop: unexpected argument 'now'
 usage: amiroctl stop [TOPIC|all]
+
+stop gyro odom
+stop: 'odom' is a second topic
+one topic a command: give one for each
 
 stop gyr
 stop: no topic 'gyr'
@@ -902,7 +922,7 @@ ALONE = {
 BEGINNING = """amiroctl: missing VERB
           begin with a simulated robot, and try the others in another terminal:
             amiroctl sim
-            amiroctl once power --wait
+            amiroctl once power
             amiroctl listen
           `amiroctl --help` lists all verbs
 """

@@ -171,7 +171,7 @@ TEST_CASE("what is wrong is said of the word where it stands") {
       {"publish gyr 1s", 1, "no topic 'gyr'", "did you mean 'gyro'?"},
       {"publish zzzzzz 1s", 1, "no topic 'zzzzzz'", "one of: "},
       {"publish 0x99 1s", 1, "no topic '0x99'", "one of: "},
-      {"publish 0x108 1s", 1, "no topic '0x108'", "one of: "},
+      {"publish 0x108 1s", 1, "no topic '0x108'", "it is the identifier of a request to gyroscope"},
       {"publish 0x06 1s", 1, "no topic '0x06'", "one of: "},  // a frame of the magnetometer, not a topic
       {"publish 1f 1s", 1, "no topic '1f'", "did you mean '0x1F' (proximity_ring)?"},
       {"publish 0x01 1s", 1, "'0x01' is an actuator", "set"},

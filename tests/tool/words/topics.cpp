@@ -118,7 +118,8 @@ TEST_CASE("a number without its 0x is one in hexadecimal, or in decimal") {
   CHECK(topic_suggestion(catalogue, "0") == "did you mean '0x00' (first)?");
   CHECK(topic_suggestion(catalogue, "ff") == "did you mean '0xFF' (last)?");
   CHECK(topic_suggestion(catalogue, "255") == "did you mean '0xFF' (last)?");
-  for (const char* const beyond : {"100", "256"})
+  CHECK(topic_suggestion(catalogue, "100") == "it is the identifier of a request to first");
+  for (const char* const beyond : {"256", "800"})
     CHECK_THAT(topic_suggestion(catalogue, beyond), Catch::StartsWith("one of: first, last, lamp"));
 }
 
