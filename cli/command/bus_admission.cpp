@@ -182,7 +182,8 @@ void Judgement::print_table() {
     std::string names;
     for (const auto* topic : traffic_.unheard(asked_))
       names.append(names.empty() ? "" : ", ").append(topic->name);
-    print_fitted(fmt::format("not known: in time unless one of these runs, less often than every {}: {}\n",
+    print_fitted(fmt::format("not known: in time unless one of these runs unheard, at a period above {} "
+                             "(--listen hears more): {}\n",
                              us(traffic_.window().count()), names),
                  4);
   }
@@ -222,14 +223,21 @@ void admit(const protocol::Catalogue& catalogue, transport::Bus& bus, const clie
     own = judgement.bus().is_asked(key);
   }
   if (options.explain) judgement.print_table();
+  const base::Duration part_period = asked->topic->shortest_period;
   const auto offer = [&](base::Duration period) {
+    const std::string of_part = period < part_period
+                                    ? fmt::format("; the part samples every {}", to_text(part_period))
+                                    : std::string{};
     if (judgement.surely_passes(period))
-      return fmt::format("the shortest period that passes is {}", to_text(period));
+      return fmt::format("the shortest period that passes is {}{}", to_text(period), of_part);
     return fmt::format(
-        "the shortest period that passes beside what was heard within {} is {} (--listen hears more)",
-        to_text(options.listen), to_text(period));
+        "the shortest period that passes beside what was heard within {} is {} (--listen hears more){}",
+        to_text(options.listen), to_text(period), of_part);
   };
   if (decision.admitted || options.force) {
+    if (asked->period < part_period)
+      remark(fmt::format("publish: the part samples {} every {}: samples will be repeated",
+                         asked->topic->name, to_text(part_period)));
     // Its board decides about it, and says so; this is what it would take. It knows of streams that were not
     // heard here, so that only what passes beside those, too, helps after its refusal.
     if (!judgement.board_takes())

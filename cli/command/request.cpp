@@ -47,6 +47,7 @@ void send_and_await(const protocol::Catalogue& catalogue, transport::Bus& bus, R
 
   client::Receiver receiver{catalogue};
   std::uint64_t parts = 0, wrong = 0;  // of the topic
+  bool has_values = shown == nullptr;
   const Over over =
       Live{bus}.receive_or_leave(Live::Clock::now() + timeout, [&](const can::Received& received) {
         if (refusals.take(received)) return false;
@@ -54,7 +55,7 @@ void send_and_await(const protocol::Catalogue& catalogue, transport::Bus& bus, R
         if (reception.topic != &topic) return true;
         ++(reception.meaning == client::Meaning::wrong_dlc ? wrong : parts);
         if (shown != nullptr)
-          shown->write({bus.name(), log::Entry{received.time, received.frame}, reception});
+          has_values |= shown->write({bus.name(), log::Entry{received.time, received.frame}, reception});
         return reception.meaning != client::Meaning::sample;
       });
   if (over == Over::enough) {
@@ -63,7 +64,11 @@ void send_and_await(const protocol::Catalogue& catalogue, transport::Bus& bus, R
     if (const auto request = protocol::decode_request(command.frames[0]);
         request && request->mode == protocol::Mode::publish)
       refusals.listen(bus);
-    return refusals.leave_if_refused();
+    refusals.leave_if_refused();
+    if (!has_values)
+      fail({fmt::format("{}: {} came, and no field that was chosen has a value", verb, topic.name),
+            fmt::format("what is derived has none beyond its range: see `amiroctl info {}`", topic.name)});
+    return;
   }
   const std::string what = fmt::format("{}: no {} within {}", verb, topic.name, words::to_text(timeout));
   if (wrong != 0)

@@ -46,7 +46,16 @@ class Admission(Case):
         self.assertNotRegex(out, " 4(1F|2[0-6])#")
         self.run_tool(*ring, f"{offered - 1}us", code=1)
         _, err = self.run_tool(*ring, "1500us")
-        self.assertEqual(err.splitlines(), ["bus: sim (the only one there is; --bus chooses)"])
+        self.assertEqual(err.splitlines(), ["bus: sim (the only one there is; --bus chooses)",
+                                            "publish: the part samples proximity_ring every 4ms: samples will be repeated"])
+
+    def test_a_period_that_is_shorter_than_the_part_s_own(self):
+        self.start_sim()
+        _, err = self.run_tool("publish", "gyro", "1ms")
+        self.assertIn("publish: the part samples gyroscope every 1.25ms: samples will be repeated\n", err)
+        self.assertNotIn("the part", self.run_tool("publish", "gyro", "1250us")[1])
+        _, err = self.run_tool("publish", "gyro", "100us", code=1)
+        self.assertRegex(err, r"is \d+us \(--listen hears more\); the part samples every 1.25ms; --explain shows all, ")
 
     def test_the_offer_passes(self):
         self.everything_at("50ms")
@@ -166,7 +175,7 @@ class Admission(Case):
             self.run_tool("publish", sensor, "60s")
         verdicts, out = self.verdicts(*mag)
         self.assertEqual(verdicts, ["not known"] * 3, out)
-        self.assertRegex(out, r"not known: in time unless one of these runs, less often than every 1\d\d(\.\d+)?ms: "
+        self.assertRegex(out, r"not known: in time unless one of these runs unheard, at a period above 1\d\d(\.\d+)?ms \(--listen hears more\): "
                               r"odometry, .*accelerometer, .*motors")
         # Heard, they are what the board refuses it for: its own streams of one level delay each other.
         for sensor in ("gyro", "accel"):
