@@ -5,6 +5,8 @@
 #include "ocm/j1939/broadcast.hpp"
 #include "ocm/j1939/identifier.hpp"
 
+#include "cli/shared/clock.hpp"
+
 namespace ocm::cli {
 namespace {
 
@@ -25,7 +27,7 @@ void Broadcasts::begin(client::Broadcast broadcast, const std::optional<client::
   Each each{std::move(broadcast), {}, now + Clock::duration{1}, now, now, now, 0, false, {}};
   if (repeat) {
     each.period = repeat->period;
-    each.end = repeat->lasting.count() > 0 ? now + repeat->lasting : Moment::max();
+    each.end = repeat->lasting.count() > 0 ? time_after(now, repeat->lasting) : Moment::max();
   }
   all_.push_back(std::move(each));
 }

@@ -12,6 +12,7 @@
 #include "cli/shared/live.hpp"
 #include "cli/shared/messages.hpp"
 #include "cli/shared/outgoing.hpp"
+#include "cli/shared/set_points.hpp"
 #include "cli/shared/unhurried_messages.hpp"
 #include "cli/shared/values.hpp"
 #include "cli/words/quantity.hpp"
@@ -63,16 +64,19 @@ void carry_out(Session& session, const Commanding& commanding, const client::Com
   const std::string& verb = commanding.verb();
   const bool guarded = verb == "drive" || verb == "led" || verb == "set";
   const auto bus = guarded ? open_to_command(session, verb) : session.open_bus();
-  RefusalWatch refusals{session.catalogue(), verb, commanding.confirm()};
-  PresenceWatch presence{session.catalogue(), verb, commanding.confirm()};
+  RefusalWatch refusals{commanding.catalogue(), verb, commanding.confirm()};
+  PresenceWatch presence{commanding.catalogue(), verb, commanding.confirm()};
   presence.sent(command);
-  refusals.prepare(*bus, frames, presence.questions());
-  Outgoing outgoing{*bus, verb, command.ends_hold ? still_moving : ""};
+  refusals.prepare(*bus, frames, presence.signs());
+  const char* const otherwise = command.ends_hold                              ? still_moving
+                                : ends_travel(commanding.catalogue(), command) ? still_travelling
+                                                                               : "";
+  Outgoing outgoing{*bus, verb, otherwise};
   command.each_frame([&](const can::AnyFrame& frame) { outgoing.send(frame); });
   outgoing.expect_all_left();
   refusals.sent(frames);
-  presence.ask(*bus, outgoing);
   refusals.listen(*bus, [&](const can::Received& received) { presence.take(received); });
+  presence.ask(*bus, outgoing);
   Live live{*bus};
   const Over over = presence.listen(live, [&](const can::Received& received) {
     presence.take(received);
@@ -80,7 +84,7 @@ void carry_out(Session& session, const Commanding& commanding, const client::Com
   });
   if (over == Over::signal) throw Exit{exit_code_after_interrupt(exit_failure)};
   if (command.ends_hold) refusals.forgive_unserved();
-  const bool silent = presence.tell(command.ends_hold ? still_moving : "");
+  const bool silent = presence.tell(otherwise);
   refusals.leave_if_refused();
   if (silent) throw Exit{exit_failure};
 }

@@ -35,7 +35,8 @@ void show_line(std::string_view text) {
 }  // namespace
 
 int drive_by_pad(Session& session, const PadDriveOptions& options) {
-  PadDrive drive{session.catalogue(), options.command, pad_speed(options, 0, "10cm/s"),
+  const protocol::Catalogue& catalogue = session.catalogue_on_bus(true);
+  PadDrive drive{catalogue, options.command, pad_speed(options, 0, "10cm/s"),
                  pad_speed(options, 1, "45deg/s"), show_line};
   auto pad = open_gamepad(options.device);
   if (!pad) fail({"drive: " + pad.error.what, pad.error.remedy});
@@ -44,7 +45,7 @@ int drive_by_pad(Session& session, const PadDriveOptions& options) {
   catch_broken_pipe();
   const auto bus = open_to_command(session, "drive");
   remark("gamepad: " + (*pad)->name());
-  Timeline timeline{*bus, session.catalogue(), "drive", options.others, options.confirm, {}};
+  Timeline timeline{*bus, catalogue, "drive", options.others, options.confirm, {}};
   PadDrive::End end = PadDrive::End::signal;
   if (timeline.listen_first()) {
     timeline.expect_no_other();
@@ -55,8 +56,7 @@ int drive_by_pad(Session& session, const PadDriveOptions& options) {
   if (end == PadDrive::End::gone)
     fail({fmt::format("drive: gamepad {} is gone; the motors rest", options.device),
           "plug it in or switch it on again, and begin the drive again"});
-  if (end == PadDrive::End::signal) return exit_code_after_interrupt(exit_failure);
-  return fine ? exit_success : exit_failure;
+  return exit_code_after_interrupt(fine && end != PadDrive::End::signal ? exit_success : exit_failure);
 }
 
 }  // namespace ocm::cli

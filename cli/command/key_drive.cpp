@@ -39,13 +39,11 @@ class KeyDrive {
  public:
   KeyDrive(Session& session, const KeyDriveOptions& options)
       : options_(&options),
-        parser_(session.catalogue(), "amiroctl "),
+        parser_(session.catalogue_on_bus(true), "amiroctl "),
         forward_(speed_of(options, 0, "10cm/s")),
         turning_(speed_of(options, 1, "45deg/s")) {
     // What a person asks for now is within the limits, or is refused before anything moves.
-    for (const Direction direction : {Direction{1, 0}, Direction{0, 1}})
-      if (const auto command = command_to(direction); !command)
-        fail({"drive: --keys: " + command.error.what, command.error.remedy}, exit_usage);
+    if (const auto error = beyond()) fail({"drive: --keys: " + error->what, error->remedy}, exit_usage);
   }
 
   /// The motors were set to rest, and no key is read any more: so it stays in the terminal.
@@ -105,7 +103,7 @@ class KeyDrive {
     forward_.change(steps);
     turning_.change(steps);
     note_.clear();
-    if (!command_to({1, 0}) || !command_to({0, 1})) {
+    if (beyond()) {
       std::tie(forward_, turning_) = before;
       note_ = "no faster: the limit of the spec";
     }
@@ -119,7 +117,14 @@ class KeyDrive {
     if (direction == Direction{})
       timeline.rest();
     else
-      timeline.carry_out(*command_to(direction));
+      timeline.carry_out(*command_to(direction));  // within the limits, as looked at before
+  }
+
+  /// What is wrong with the speeds: a robot may go back more slowly than ahead.
+  [[nodiscard]] std::optional<words::WordError> beyond() const {
+    for (const Direction direction : {Direction{1, 0}, Direction{-1, 0}, Direction{0, 1}, Direction{0, -1}})
+      if (auto command = command_to(direction); !command) return std::move(command.error);
+    return std::nullopt;
   }
 
   [[nodiscard]] base::Result<client::Command, words::WordError> command_to(Direction direction) const {
@@ -172,7 +177,7 @@ int drive_by_keys(Session& session, const KeyDriveOptions& options) {
           "drive a script with amiroctl run, or say the velocities: amiroctl drive 10cm/s --for 2s"},
          exit_usage);
   const auto bus = open_to_command(session, "drive");
-  Timeline timeline{*bus, session.catalogue(), "drive", options.others, options.confirm, {}};
+  Timeline timeline{*bus, session.catalogue_on_bus(true), "drive", options.others, options.confirm, {}};
   bool quit = timeline.listen_first();
   if (quit) {
     timeline.expect_no_other();
@@ -181,8 +186,7 @@ int drive_by_keys(Session& session, const KeyDriveOptions& options) {
     drive.show_end();
   }
   const bool fine = timeline.finish();
-  if (!quit) return exit_code_after_interrupt(exit_failure);
-  return fine ? exit_success : exit_failure;
+  return exit_code_after_interrupt(quit && fine ? exit_success : exit_failure);
 }
 
 }  // namespace ocm::cli

@@ -41,7 +41,7 @@ PadDrive::PadDrive(const protocol::Catalogue& catalogue, words::CommandOptions o
       turning_(std::move(turning)),
       show_(std::move(show)) {
   // What a person asks for is within the limits, or is refused before anything moves.
-  for (const Wanted full : {Wanted{1, 0}, Wanted{0, 1}})
+  for (const Wanted full : {Wanted{1, 0}, Wanted{-1, 0}, Wanted{0, 1}, Wanted{0, -1}})
     if (const auto command = command_to(full); !command)
       fail({"drive: --gamepad: " + command.error.what, command.error.remedy}, exit_usage);
 }

@@ -36,11 +36,11 @@ class PresenceWatch {
   bool take(const can::Received& received);
   /// The caller says itself which board is silent.
   void waive() { waived_ = true; }
-  /// What `ask` will ask for; of a bus that delivers only some topics these are needed.
-  [[nodiscard]] std::vector<const protocol::Topic*> questions() const;
+  /// What shows that boards are there; of a bus that delivers only some topics these are needed.
+  [[nodiscard]] std::vector<const protocol::Topic*> signs() const;
 
-  /// Behind the commands, once they have left. Of a bus that takes no request for a second nothing more is
-  /// said. `bus` must outlive this.
+  /// Behind the commands, once they have left, and after a while of listening: the question ends a stream of
+  /// the status, and what is published comes by itself. `bus` must outlive this.
   void ask(const transport::Bus& bus, Outgoing& outgoing);
   /// Until all have answered, or time is up. `take` gets each frame, and hands it on to take().
   Over listen(Live& live, const std::function<void(const can::Received&)>& take);
@@ -49,7 +49,9 @@ class PresenceWatch {
   bool tell(std::string_view otherwise = {});
 
  private:
-  [[nodiscard]] bool is_due() const { return !asked_.empty() && !presence_.unheard().empty(); }
+  /// Those that were asked, or could not be, and have not answered.
+  [[nodiscard]] std::vector<const protocol::Topic*> silent() const;
+  [[nodiscard]] std::vector<const protocol::Topic*> questions() const;
 
   const protocol::Catalogue* catalogue_;
   client::FrameIndex index_;
@@ -58,6 +60,7 @@ class PresenceWatch {
   const transport::Bus* bus_ = nullptr;  ///< that of `ask`
   bool waived_;
   std::vector<const protocol::Topic*> asked_;
+  bool takes_ = true;  ///< the bus has taken the questions
 };
 
 }  // namespace ocm::cli

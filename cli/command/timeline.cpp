@@ -165,7 +165,7 @@ void Timeline::carry_out(const client::Command& command) {
   if (command.ends_hold) held_.reset();
   if (command.repeat) {
     const auto [period, lasting] = *command.repeat;
-    const auto end = lasting.count() > 0 ? begin + lasting : Clock::time_point::max();
+    const auto end = lasting.count() > 0 ? time_after(begin, lasting) : Clock::time_point::max();
     command.each_frame([&, each = period](const can::AnyFrame& frame) {
       repeated_.push_back({frame, each, begin + each, end, begin});
     });
@@ -173,7 +173,7 @@ void Timeline::carry_out(const client::Command& command) {
   if (!command.hold) return;
   const auto now = look_at_clock();
   const auto& hold = *command.hold;
-  const auto end = hold.lasting.count() > 0 ? now + hold.lasting : Clock::time_point::max();
+  const auto end = hold.lasting.count() > 0 ? time_after(now, hold.lasting) : Clock::time_point::max();
   held_ = Held{hold, now + client::hold_period, end, now};
   // Just as its first set point left: no turn has been missed yet.
   if (stood_still_ >= client::longest_without_set_point) end_for_a_stop(stood_still_);
@@ -190,7 +190,6 @@ bool Timeline::finish() {
   rest();
   outgoing_.expect_all_left();
   if (interrupted() == 0) {
-    presence_.ask(*bus_, outgoing_);
     const auto take = [this](const can::Received& received) {
       const bool own = presence_.take(received);
       refusals_.take(received);
@@ -200,6 +199,7 @@ bool Timeline::finish() {
       take(received);
       return true;
     }));
+    if (interrupted() == 0) presence_.ask(*bus_, outgoing_);
     static_cast<void>(presence_.listen(live_, take));
   }
   tell_refusals();

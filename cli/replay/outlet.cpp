@@ -92,16 +92,16 @@ std::string Outlet::end_behaviours() {
 
 std::string Outlet::end_after_all() {
   std::vector<can::Frame> ends;
-  const bool travels = !behaviours_.all().empty();
-  for (const auto& each : behaviours_.all()) ends.push_back(each.end);
-  behaviours_.clear();
   if (!is_rest(set_point_)) {
     set_point_.data = {};
     ends.push_back(set_point_);
   }
+  const bool travels = !behaviours_.all().empty();
+  for (const auto& each : behaviours_.all()) ends.push_back(each.end);
+  behaviours_.clear();
   if (ends.empty()) return {};
   bool taken = true;
-  for (const can::Frame& frame : ends) taken = taken && outgoing_.is_taken(frame, patience_after_all);
+  for (const can::Frame& frame : ends) taken = outgoing_.is_taken(frame, patience_after_all) && taken;
   if ((taken && outgoing_.all_left(std::chrono::milliseconds{500})) || outgoing_.robot_is_gone()) return {};
   return travels ? still_travelling : still_moving;
 }

@@ -189,6 +189,10 @@ void Player::print(const log::Entry& entry, const log::Interfaces& interfaces) {
     ++played_.error_frames;
     return;
   }
+  if (!route(entry.interface, interfaces)) {
+    ++played_.no_route;
+    return;
+  }
   log::Entry printed = entry;
   printed.time = options_.at_once ? base::Time{} : playback_.due(entry.time);
   printer_->write(printed_, {&printed, 1}, interfaces);

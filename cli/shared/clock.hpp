@@ -22,6 +22,13 @@ struct Clock {
   [[nodiscard]] static time_point now() noexcept;
 };
 
+/// So long behind `begin`; for ever where no clock gets that far.
+[[nodiscard]] constexpr Clock::time_point time_after(Clock::time_point begin,
+                                                     Clock::duration lasting) noexcept {
+  const bool ever = lasting > Clock::time_point::max() - std::max(begin, Clock::time_point{});
+  return ever ? Clock::time_point::max() : begin + lasting;
+}
+
 /// The wall clock's, as on frames: it can be set.
 [[nodiscard]] base::Time unix_time() noexcept;
 

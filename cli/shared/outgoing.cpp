@@ -117,7 +117,11 @@ void Outgoing::otherwise(std::string meaning) {
 }
 
 void Outgoing::otherwise_after_the_next(std::string meaning) {
-  if (!otherwise_.empty()) return;
+  if (!otherwise_.empty()) {
+    if (meaning == still_travelling)
+      otherwise_ = std::move(meaning);  // no watchdog ends that: it is the graver
+    return;
+  }
   otherwise_ = std::move(meaning);
   before_ = bus_.counters().sent;
   always_ = false;

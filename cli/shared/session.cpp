@@ -124,15 +124,21 @@ spec::Model Session::load(const std::string& word) const {
 const protocol::Catalogue& Session::catalogue_on_bus(bool opens_bus) {
   const protocol::Catalogue& all = catalogue();
   if (!all.has_buses() || (bus_name.empty() && !opens_bus)) return all;
-  if (spec_on_bus_ == nullptr) {
-    const std::string bus = bus_name.empty() ? only_bus() : bus_name;
+  return catalogue_on(bus_name.empty() ? only_bus() : bus_name);
+}
+
+const protocol::Catalogue& Session::catalogue_on(const std::string& bus) {
+  const protocol::Catalogue& all = catalogue();
+  if (!all.has_buses()) return all;
+  auto& there = specs_on_[bus];
+  if (there == nullptr) {
     spec::Model model = spec().model();
     const auto is_elsewhere = [&bus](const auto& object) { return !object.bus.empty() && object.bus != bus; };
     std::erase_if(model.topics, is_elsewhere);
     std::erase_if(model.messages, is_elsewhere);
-    spec_on_bus_ = std::make_unique<spec::Spec>(std::move(model));
+    there = std::make_unique<spec::Spec>(std::move(model));
   }
-  return spec_on_bus_->catalogue();
+  return there->catalogue();
 }
 
 void Session::keep_specs(std::string_view verb, const std::string& output) const {
@@ -164,7 +170,7 @@ std::string Session::narrow_to_bus(std::string_view verb, const std::string& bus
           fmt::format("--spec {}={}, or --bus {}", chosen, words.front().file, named.front())},
          exit_usage);
   spec_.reset();
-  spec_on_bus_.reset();
+  specs_on_.clear();
   return chosen;
 }
 

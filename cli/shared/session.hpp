@@ -1,6 +1,7 @@
 /// What all verbs share: the options before the verb, the robot's catalogue and the bus.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -34,6 +35,8 @@ class Session {
   /// What is on the bus that is commanded: --spec can1=FILE is nothing that can0 takes. The bus is --bus, or
   /// the only one; where none is known, as with --dry-run, all that there is.
   [[nodiscard]] const protocol::Catalogue& catalogue_on_bus(bool opens_bus);
+  /// The same of a bus by its name.
+  [[nodiscard]] const protocol::Catalogue& catalogue_on(const std::string& bus);
   /// Of a verb that is about one bus: from now on the specs are those for it, as if they had been given
   /// without their interface. It is `bus`, or where that is empty the only one that --spec names; exit_usage
   /// where there are several, or none for it. To be called before anything of the spec is asked for. Returns
@@ -62,7 +65,7 @@ class Session {
   bool no_colour_ = false;
   bool strict_spec_ = false;
   std::unique_ptr<spec::Spec> spec_;
-  std::unique_ptr<spec::Spec> spec_on_bus_;
+  std::map<std::string, std::unique_ptr<spec::Spec>> specs_on_;  ///< by bus
 };
 
 }  // namespace ocm::cli

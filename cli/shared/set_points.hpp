@@ -19,4 +19,7 @@ using client::is_rest;
   return (topic.role == protocol::Role::drive || topic.timeout.count() != 0) && is_rest(set_point);
 }
 
+/// Whether it ends what no watchdog ends soon, such as a travel.
+[[nodiscard]] bool ends_travel(const protocol::Catalogue& catalogue, const client::Command& command);
+
 }  // namespace ocm::cli

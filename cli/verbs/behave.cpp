@@ -102,7 +102,7 @@ int end_all(Session& session, const BehaveOptions& options) {
   if (options.lasting) fail({"behave: none takes no --for", "drop --for"}, exit_usage);
   if (!options.speed.empty()) fail({"behave: none takes no --speed", "drop --speed"}, exit_usage);
   if (!options.distance.empty()) fail({"behave: none takes no --distance", "drop --distance"}, exit_usage);
-  const auto& catalogue = session.catalogue();
+  const auto& catalogue = session.catalogue_on_bus(!options.dry_run);
   client::Command command;
   for (const std::string_view name : {"avoid", "home", "follow", "travel"})
     if (const auto* topic = catalogue.find(name); topic != nullptr && topic->kind == protocol::Kind::actuator)
@@ -293,7 +293,7 @@ void behave(Session& session, const BehaveOptions& options, int& exit_code) {
     exit_code = end_all(session, options);
     return;
   }
-  const auto& catalogue = session.catalogue();
+  const auto& catalogue = session.catalogue_on_bus(!options.dry_run);
   if (options.which != "follow" && options.which != "avoid" && options.which != "home")
     fail({fmt::format("behave: unknown behaviour '{}'", options.which), "one of: follow, avoid, home, none"},
          exit_usage);

@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "ocm/log/playback.hpp"
+
 #include "cli/logs/opened_log.hpp"
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/output_file.hpp"
@@ -42,7 +44,7 @@ class Window {
   /// A condition holds by what came before the window, too.
   [[nodiscard]] bool has(const log::Entry& entry) {
     if (!begin_) begin_ = entry.time;
-    const base::Duration at = entry.time - *begin_;
+    const base::Duration at = log::Playback::distance(entry.time, *begin_);
     return choice_.has(entry) && at >= since_ && at <= until_;
   }
   void on_interface(std::uint16_t number, std::string_view name) { choice_.on_interface(number, name); }

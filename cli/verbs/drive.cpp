@@ -70,16 +70,18 @@ void declare_drive(Verb verb, Session& session, int& exit_code) {
     catch_hangups();
     catch_broken_pipe();
     const auto bus = open_to_command(session, "drive");
-    Timeline timeline{*bus, session.catalogue(), "drive", others, options->commanding.confirm(), {}};
-    bool ended = timeline.listen_first();
-    if (ended && options->once) {
-      timeline.carry_out_once(command);
-    } else if (ended) {
-      timeline.carry_out(command);
-      ended = timeline.wait_for_end();
+    Timeline timeline{*bus,   options->commanding.catalogue(), "drive",
+                      others, options->commanding.confirm(),   {}};
+    if (timeline.listen_first()) {
+      if (options->once) {
+        timeline.carry_out_once(command);
+      } else {
+        timeline.carry_out(command);
+        static_cast<void>(timeline.wait_for_end());
+      }
     }
     if (!timeline.finish()) exit_code = exit_failure;
-    if (!ended) exit_code = exit_code_after_interrupt(exit_success);
+    exit_code = exit_code_after_interrupt(exit_code);  // also of one behind the end
   });
 }
 

@@ -54,7 +54,7 @@ void encode(Session& session, const EncodeOptions& options, int& exit_code) {
   }
   write(false);
   lines.failed() && frames == 0 ? (*out)->discard() : (*out)->finish();
-  remark(counted(frames, "frame") + " encoded");
+  remark(counted(frames, "frame") + ((*out)->failure().what.empty() ? " encoded" : " read"));
   lines.tell_unknown_keys();
   logs::tell_losses((*out)->lost(), format);
   if (!(*out)->failure().what.empty()) fail((*out)->failure(), exit_code_after_interrupt(exit_failure));

@@ -133,19 +133,23 @@ std::vector<Route> parse_routes(const std::vector<std::string>& words) {
   return routes;
 }
 
-/// The bus, or one for each name that --interface has on its right side.
-std::vector<replay::Outlet> open_outlets(Session& session, const std::vector<Route>& routes,
-                                         replay::PlayerOptions& player) {
-  std::vector<replay::Outlet> outlets;
+/// The names that --interface has on its right side, each once; `player` gets the way to each.
+std::vector<std::string> buses_of(const std::vector<Route>& routes, replay::PlayerOptions& player) {
   std::vector<std::string> names;
-  if (routes.empty()) outlets.emplace_back(open_to_command(session, "replay"), session.catalogue());
   for (const auto& route : routes) {
     const auto known = std::find(names.begin(), names.end(), route.bus);
     player.routes.emplace_back(route.in_log, static_cast<std::size_t>(known - names.begin()));
-    if (known != names.end()) continue;
-    names.push_back(route.bus);
-    outlets.emplace_back(open_to_command(session, "replay", route.bus), session.catalogue());
+    if (known == names.end()) names.push_back(route.bus);
   }
+  return names;
+}
+
+/// These, or where there are none, the bus.
+std::vector<replay::Outlet> open_outlets(Session& session, const std::vector<std::string>& buses) {
+  std::vector<replay::Outlet> outlets;
+  if (buses.empty()) outlets.emplace_back(open_to_command(session, "replay"), session.catalogue_on_bus(true));
+  for (const auto& bus : buses)
+    outlets.emplace_back(open_to_command(session, "replay", bus), session.catalogue_on(bus));
   return outlets;
 }
 
@@ -192,7 +196,7 @@ void play(Session& session, const ReplayOptions& options, int& exit_code) {
   auto chosen = player_options(options);
   replay::Selection selection{catalogue, chosen_topics("replay", catalogue, options.topics),
                               parse_only(options.only)};
-  const auto routes = parse_routes(options.interfaces);
+  const auto buses = buses_of(parse_routes(options.interfaces), chosen);
   if (options.passes != 1 && options.file == "-")
     fail({"replay: --loop needs a file", "what came on the standard input is gone"}, exit_usage);
   if (options.passes != 1 && options.dry_run)
@@ -207,7 +211,7 @@ void play(Session& session, const ReplayOptions& options, int& exit_code) {
   if (options.dry_run)
     printer = logs::find_format("candump")->writer(catalogue);
   else
-    outlets = open_outlets(session, routes, chosen);
+    outlets = open_outlets(session, buses);
   replay::Player player{std::move(chosen), std::move(selection), std::move(outlets), std::move(printer)};
   bool damaged = false;
   try {
@@ -260,7 +264,7 @@ void learn(replay::StandIn& robot, logs::OpenedLog& log, const replay::Span& spa
         robot.on_interface(entry.interface, log.reader().interfaces().name(entry.interface));
       if (!robot.learn(*frame, entry.interface))
         fail({fmt::format("{} has more frames than fit into the memory for --on-command", log.path()),
-              "choose a part of it with --from and --until, or some topics"});
+              "choose a part of it with --since and --until, or some topics"});
     }
   }
 }

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <span>
 #include <string_view>
@@ -71,8 +72,10 @@ words::Script checked(const std::string& file, const std::string& text,
 
 /// When a step is due, from the start.
 Timeline::Clock::duration due(const words::Step& step, double speed) {
-  return std::chrono::duration_cast<Timeline::Clock::duration>(
-      std::chrono::duration<double, std::nano>(static_cast<double>(step.at.count()) / speed));
+  const double scaled = static_cast<double>(step.at.count()) / speed;
+  const auto longest = Timeline::Clock::duration::max();
+  return scaled < static_cast<double>(longest.count()) ? Timeline::Clock::duration{std::llround(scaled)}
+                                                       : longest;
 }
 
 /// When the first drive is due, from the start; nothing: there is none.
@@ -216,6 +219,11 @@ class ScriptRun {
     }
     if (!whole) end_behaviours();
     int exit_code = timeline_.finish() ? exit_success : exit_failure;
+    if (whole && interrupted() != 0) {  // while it listened for answers
+      whole = false;
+      end_behaviours();
+      static_cast<void>(timeline_.finish());
+    }
     if (!whole) {
       remark(left_by(done(), *catalogue_, behaviours_));
       exit_code = exit_code_after_interrupt(exit_success);
@@ -238,11 +246,11 @@ class ScriptRun {
     bool asks = drives_ && *drives_ > asks_before && !timeline_.has_asked();
     for (const auto& step : steps_) {
       if (asks && due(step, speed_) > *drives_ - asks_before) {
-        if (!timeline_.wait_for_step(start + *drives_ - asks_before)) return false;
+        if (!timeline_.wait_for_step(time_after(start, *drives_ - asks_before))) return false;
         timeline_.ask();
         asks = false;
       }
-      if (!timeline_.wait_for_step(start + due(step, speed_))) return false;
+      if (!timeline_.wait_for_step(time_after(start, due(step, speed_)))) return false;
       remark(fmt::format("{:>8}  {}", words::to_text(step.at), step.text));
       ++begun_;
       timeline_.carry_out(step.command);

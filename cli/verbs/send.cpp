@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "ocm/can/any_text.hpp"
+#include "ocm/log/playback.hpp"
 
 #include "cli/command/commanding.hpp"
 #include "cli/shared/clock.hpp"
@@ -33,7 +34,7 @@ class Pace {
       first_ = time;
       start_ = Clock::now();
     }
-    const auto at = start_ + (time - *first_);
+    const auto at = time_after(start_, log::Playback::distance(time, *first_));
     for (;;) {
       if (interrupted() != 0) return false;
       const auto left = at - Clock::now();
@@ -62,33 +63,41 @@ void send_lines(Session& session, const SendOptions& options, bool dry_run, int&
   std::uint64_t sent = 0;
   std::uint64_t errors = 0;
   std::uint64_t fd = 0;  ///< that the bus cannot carry
+  const auto report = [&] {
+    std::string text = fmt::format("{} {}", counted(sent, "frame"), dry_run ? "read" : "sent");
+    add_count(text, errors, "error frame", "left out, which only reports");
+    if (fd != 0)
+      add_count(text, fd, "CAN FD frame", fmt::format("not sent: {} ({})", obstacle->what, obstacle->remedy));
+    add_count(text, lines.bad_lines(), "line", "could not be read");
+    remark(text);
+    lines.tell_unknown_keys();
+  };
   log::Entry entry;
   std::string_view from;
-  while (lines.next(entry, from)) {
-    if (entry.format == can::Format::error) {
-      ++errors;
-      continue;
+  try {
+    while (lines.next(entry, from)) {
+      if (entry.format == can::Format::error) {
+        ++errors;
+        continue;
+      }
+      const can::AnyFrame frame = entry.frame();
+      if (frame.is_fd() && obstacle && !obstacle->what.empty()) {
+        ++fd;
+        continue;
+      }
+      if (options.timed && !pace.wait_for(entry.time)) break;
+      if (dry_run)
+        fmt::print("{}\n", can::to_text(frame).view());
+      else
+        outgoing->send(frame);
+      ++sent;
     }
-    const can::AnyFrame frame = entry.frame();
-    if (frame.is_fd() && obstacle && !obstacle->what.empty()) {
-      ++fd;
-      continue;
-    }
-    if (options.timed && !pace.wait_for(entry.time)) break;
-    if (dry_run)
-      fmt::print("{}\n", can::to_text(frame).view());
-    else
-      outgoing->send(frame);
-    ++sent;
+    if (outgoing) outgoing->expect_all_left();
+  } catch (const Exit&) {  // the error is said
+    report();
+    throw;
   }
-  if (outgoing) outgoing->expect_all_left();
-  std::string text = fmt::format("{} {}", counted(sent, "frame"), dry_run ? "read" : "sent");
-  add_count(text, errors, "error frame", "left out, which only reports");
-  if (fd != 0)
-    add_count(text, fd, "CAN FD frame", fmt::format("not sent: {} ({})", obstacle->what, obstacle->remedy));
-  add_count(text, lines.bad_lines(), "line", "could not be read");
-  remark(text);
-  lines.tell_unknown_keys();
+  report();
   if (lines.failed() || fd != 0) exit_code = exit_failure;
   exit_code = exit_code_after_interrupt(exit_code);
 }

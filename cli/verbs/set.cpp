@@ -32,11 +32,12 @@ void declare_set(Verb verb, Session& session, int& exit_code) {
     catch_hangups();
     catch_broken_pipe();
     const auto bus = open_to_command(session, "set");
-    Timeline timeline{*bus, session.catalogue(), "set", Timeline::Others::allowed, commanding->confirm(), {}};
+    Timeline timeline{*bus, commanding->catalogue(), "set", Timeline::Others::allowed, commanding->confirm(),
+                      {}};
     timeline.carry_out(command);
-    const bool ended = timeline.wait_for_end();
+    static_cast<void>(timeline.wait_for_end());
     if (!timeline.finish()) exit_code = exit_failure;
-    if (!ended) exit_code = exit_code_after_interrupt(exit_success);
+    exit_code = exit_code_after_interrupt(exit_code);  // also of a signal behind the end
   });
 }
 

@@ -229,7 +229,7 @@ class Travel {
 };
 
 void travel(Session& session, const TravelOptions& options, int& exit_code) {
-  const auto& catalogue = session.catalogue();
+  const auto& catalogue = session.catalogue_on_bus(!options.dry_run);
   const protocol::Topic& topic = behaviour_topic(catalogue, "travel", "travel");
   const can::Frame set_point = set_point_of(topic, options);
   if (options.dry_run) {

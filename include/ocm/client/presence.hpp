@@ -43,6 +43,15 @@ class Presence {
     if (subject.topic->board < boards_.size()) boards_[subject.topic->board].heard = true;
   }
 
+  /// All that the boards that were commanded can send: each of it shows that its board is there.
+  [[nodiscard]] std::vector<const protocol::Topic*> signs(const protocol::Catalogue& catalogue) const {
+    std::vector<const protocol::Topic*> all;
+    for (const protocol::Topic& topic : catalogue.topics)
+      if (topic.kind == protocol::Kind::sensor && topic.board < boards_.size() &&
+          boards_[topic.board].commanded)
+        all.push_back(&topic);
+    return all;
+  }
   /// The status of each board that was commanded and has sent nothing, in the order of the spec's boards.
   [[nodiscard]] std::vector<const protocol::Topic*> unheard() const {
     std::vector<const protocol::Topic*> all;

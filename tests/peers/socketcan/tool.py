@@ -16,14 +16,14 @@ from harness import (Adapter, Candump, Process, Vcan, as_nobody, check, equal, e
 
 # The thesis's standalone demo [Thesis 6.3, in the order of its timing diagram], as it must come on the bus:
 # second, frame. A drive is one frame here; its repeats are looked at by themselves. Before it the board is asked what it does by itself,
-# and behind all of it, whether the lights' board is there, of which nothing was heard.
+# and 100 ms behind all of it, whether the lights' board is there, of which nothing was heard.
 STANDALONE = [
     (1, '209#01F40100'), (5, '21F#01E80300'), (10, '21E#02'), (15, '208#01881300'), (16, '21F#00'),
     (17, '205#01200300'), (18, '209#00'), (21, '203#01840300'),
     (22.9, '20D#02'), (23, '201#50C3000000000000'), (25, '23C#FFFFFF'),
     (27, '201#0000000000000000'), (30, '203#00'), (31, '208#00'), (32, '21E#02'), (33, '204#01D00700'),
     (35, '205#00'), (38, '204#00'), (40, '23D#FFFFFF'), (40, '23F#FFFFFF'), (40, '241#FFFFFF'), (40, '243#FFFFFF'),
-    (40, '357#02')]
+    (40.1, '357#02')]
 # What the sensors must answer: frames of a sample (identifier, length), first second, last, period. One sample at
 # once, then one a period until the stop; one that falls on the stop itself may come or not.
 ANSWERS = {

@@ -121,28 +121,33 @@ TEST_CASE("presence: with --no-confirm, or a caller that says it, none is asked"
   waived.watch.waive();
   for (Bench* const bench : {&unconfirmed, &waived}) {
     CHECK(bench->listens({light}) == 0);
-    CHECK(bench->watch.questions().empty());
+    CHECK(bench->watch.signs().empty());
     CHECK(bench->asked().empty());
     CHECK(bench->tells() == "false: ");
   }
 }
 
-TEST_CASE("presence: of a simulated bus that goes, or one that takes no request, nothing is known") {
-  for (const bool is_simulated : {true, false}) {
-    PlayedBus::Conditions goes;
-    goes.gone = World::start + 300ms;
-    goes.is_simulated = is_simulated;
-    Bench gone{goes};
-    CHECK(gone.listens({light}) == 300);
-    CHECK(gone.over == Over::gone);
-    CHECK((gone.tells() == "false: ") == is_simulated);
-  }
+TEST_CASE("presence: a bus that goes meanwhile is named, and not the board") {
+  PlayedBus::Conditions goes;
+  goes.gone = World::start + 300ms;
+  Bench gone{goes};
+  CHECK(gone.listens({light}) == 300);
+  CHECK(gone.over == Over::gone);
+  CHECK(gone.tells() ==
+        "true: amiroctl: led: light_ring had not answered when the bus went: can0 is gone; so nothing shows "
+        "that "
+        "it has done it\n          plug it in\n");
+}
+
+TEST_CASE("presence: a bus that takes no request for a second is waited for no longer") {
   PlayedBus::Conditions full;
   full.room = 0;
   Bench deaf{full};
-  CHECK(deaf.listens({light}) / 100 == 10);  // a second, in which a queue empties
+  CHECK(deaf.listens({light, motors}) / 100 == 10);
   CHECK(deaf.asked().empty());
-  CHECK(deaf.tells() == "false: ");
+  CHECK_THAT(deaf.tells(),
+             Catch::StartsWith("true: amiroctl: led: di_wheel_drive and light_ring could not be asked, so "
+                               "nothing shows that they have done it\n"));
 }
 
 }  // namespace tool_clock_presence_watch_test

@@ -505,8 +505,8 @@ TEST_CASE("replay: where one bus fails, what runs on the others is ended") {
   CHECK(told[0] == std::string{"can0: "} + cli::still_moving);
   const auto& sent = buses[1]->sent();
   REQUIRE(sent.size() == 4);
-  CHECK((sent[2].frame.id == travels.id && cli::is_rest(sent[2].frame)));
-  CHECK((sent[3].frame.id == motors && cli::is_rest(sent[3].frame)));
+  CHECK((sent[2].frame.id == motors && cli::is_rest(sent[2].frame)));
+  CHECK((sent[3].frame.id == travels.id && cli::is_rest(sent[3].frame)));
   CHECK(player.end_after_all().empty());
 }
 

@@ -50,6 +50,10 @@ class OnTheBus(Case):
         self.assertEqual([line.split(",")[1:] for line in lines],
                          [["odometry", *rest] for rest in (("velocity.x", "0", "m/s"), ("velocity.z", "0", "rad/s"), ("pose.x", "0", "m"),
                                                            ("pose.y", "0", "m"), ("pose.orientation", "0", "rad"))])
+        for form in ("--json", "--pretty", "--csv"):  # nothing is near
+            out, err = self.run_tool("once", "ring", form, "--field", "ring.sensor_4.distance", code=1)
+            self.assertIn("once: proximity_ring came, and no field that was chosen has a value\n", err)
+            self.assertLessEqual(len(out.splitlines()), 1 if form == "--csv" else 0)
         out, _ = self.run_tool("once", "odom", "--csv", "--field", "odom.pose.x", "--field", "odom.pose.y")
         self.assertRegex(out, r"^time,odometry\.pose\.x,odometry\.pose\.y\n[0-9.]+,0,0\n$")
         out, _ = self.run_tool("once", "odom", "--raw")
@@ -445,6 +449,28 @@ class Scripts(Case):
         self.settle()
         out, _ = self.interrupt(listener)
         self.assertEqual(self.objects(out)[-1]["data"], "0000000000000000")
+
+    def test_a_step_in_centuries_is_waited_for(self):
+        self.start_sim()
+        listener = self.listen("--commands", "--timeout", "60s")
+        run = self.start("run", "--speed", "0.001", self.script("0s led 1 red\n3000h led 2 green\n"))
+        self.assertIn("FF0000", listener.stdout.readline())
+        self.settle()  # it waits
+        _, err = self.interrupt(run)
+        self.assertEqual(run.returncode, 130, err)
+        self.assertNotIn("green", err)
+
+    def test_what_was_sent_is_counted_also_where_the_bus_goes(self):
+        sim = self.start_sim()
+        listener = self.listen("--commands", "--timeout", "60s")
+        send = self.start("send", "--stdin", "--timed", stdin=subprocess.PIPE)
+        send.stdin.write("(1.0) sim 201#0100000000000000\n(2.5) sim 201#0000000000000000\n")
+        send.stdin.flush()
+        self.assertIn("0100000000000000", listener.stdout.readline())
+        self.interrupt(sim)
+        _, err = send.communicate(timeout=60)
+        self.assertEqual(send.returncode, 1, err)
+        self.assertIn("\n1 frame sent\n", err)
 
     def test_it_shows_what_sensors_answer_and_no_commands(self):
         self.start_sim()

@@ -1,6 +1,7 @@
 """amiroctl drive --keys: a person's keys on a pseudo terminal, and the set points that a listener hears."""
 
 import fcntl
+import json
 import os
 import pty
 import select
@@ -128,6 +129,22 @@ class Keys(harness.Case):
         os.write(self.primary, b"q")
         points, _ = self.set_points(process)
         self.assertEqual({data[:8] for _, data in points if data != REST}, {"80FC0A00"})  # 720,000 um/s
+
+    def test_a_robot_that_goes_back_more_slowly(self):
+        with open(os.path.join(harness.SOURCE, "spec", "topics.json"), encoding="utf-8") as file:
+            spec = json.load(file)
+        motors, = (topic for topic in spec["topics"] if topic["name"] == "motors")
+        motors["frames"][0]["fields"][0]["range"] = [-0.2, 1]
+        path = os.path.join(self.folder, "slow.json")
+        with open(path, "w", encoding="utf-8") as file:
+            json.dump(spec, file)
+        _, err = self.run_tool("--spec", path, "drive", "--keys", "50cm/s", code=2)
+        self.assertIn("drive: --keys: '-50cm/s' is out of range: x takes -0.2 to 1 m/s", err)
+        process = self.drive("18cm/s", "--spec", path)
+        os.write(self.primary, b"+")
+        self.shows(b"no faster")
+        os.write(self.primary, b"q")
+        process.communicate(timeout=30)
 
     def test_its_last_line_says_that_it_rests(self):
         process = self.drive()

@@ -249,6 +249,26 @@ class Interfaces(Case):
             _, err = self.run_tool("replay", self.path("two.log"), "--on-command", *option, code=2)
             self.assertIn(f"replay: {option[0]} with --on-command", err)
 
+    def test_of_two_robots_the_one_on_the_bus_is_commanded(self):
+        """On can1 the identifier of this robot's motors is a lamp's, and other wheels have another."""
+        topics = os.path.join(SOURCE, "spec", "topics.json")
+        with open(topics, encoding="utf-8") as file:
+            other = json.load(file)
+        motors, = (topic for topic in other["topics"] if topic["name"] == "motors")
+        other["topics"] = [motors | {"name": "wheels", "id": "0x70"}, {name: motors[name] for name in motors if name != "role"} | {"name": "lamp"}]
+        with open(self.path("other.json"), "w", encoding="utf-8") as file:
+            json.dump(other | {"robot": "Other", "namespace": "other"}, file)
+        specs = ("--bus", "sim", "--spec", "sim=" + topics, "--spec", "can1=" + self.path("other.json"))
+        self.start_sim()
+        listener = self.listen("motors", "--commands", "--timeout", "60s")
+        drive = self.start(*specs, "drive", "5cm/s")
+        self.assertIn("50C3000000000000", listener.stdout.readline())
+        for verb in (("drive", "-5cm/s"), ("behave", "avoid"), ("travel", "10cm")):
+            _, err = self.run_tool(*specs, *verb, code=1)
+            self.assertIn(f"amiroctl: {verb[0]}: another program commands motors: 201#50C3000000000000, ", err)
+        self.interrupt(drive)
+        self.run_tool(*specs, "set", "motors", "x=1cm/s")
+
     def test_words_that_are_no_spec(self):
         car = self.path("car.dbc")
         for word, what, remedy in (("can0=", "--spec can0=: no file behind the '='", "--spec can0=FILE"),

@@ -215,6 +215,10 @@ class Replaying(Case):
         self.assertIn("1 of interfaces without a bus", err)
         _, err = self.run_tool("replay", self.path("in.log"), "--interface", "can2=sim", "--interface", "can0=sim")
         self.assertIn("sent 2 frames in ", err)  # two interfaces, one bus
+        out, err = self.run_tool("replay", self.path("in.log"), "--interface", "can0=sim", "--dry-run")
+        self.assertRegex(out, r"^\([0-9.]+\) can0 608#01\n$")
+        self.assertIn("1 frame would be sent", err)
+        self.assertIn("2 of interfaces without a bus", err)
 
     def test_a_log_stands_in_for_the_robot(self):
         sim = self.start_sim("--without", "di_wheel_drive,light_ring,power_management")

@@ -1,5 +1,6 @@
 """A board that is off: any other node acknowledges what is sent to it, so what sets something asks whether it is there."""
 
+import json
 import os
 import time
 
@@ -50,6 +51,53 @@ class OnTheSimulatedRobot(WithScript):
             self.assertIn(f"{silent(verb[0], 'di_wheel_drive')}; {MOVES}", err, verb)
         self.run_tool("stop", "gyro")  # silent already
         self.run_tool("led", "1", "red")
+
+
+    def test_a_published_status_goes_on(self):
+        self.start_sim()
+        self.run_tool("publish", "light_ring_status", "50ms")
+        listener = self.listen("--commands", "--timeout", "20s")
+        self.run_tool("led", "1", "red")
+        self.run_tool("send", "123#")
+        ids = []
+        while not ids or ids[-1] != "123":
+            ids.append(json.loads(listener.stdout.readline())["id"])
+        self.assertIn("23C", ids)
+        self.assertNotIn("357", ids)  # it was heard, and a question would have ended the stream
+
+    def test_a_signal_during_the_wait(self):
+        self.start_sim("--without", "light_ring")
+        listener = self.listen("--commands", "--timeout", "60s")
+
+        def ends(*verb):
+            tool = self.start(*verb)
+            while json.loads(listener.stdout.readline())["id"] != "357":  # it asks
+                pass
+            return self.interrupt(tool)[1], tool.returncode
+        self.assertEqual(ends("set", "led_1", "red=1", "--every", "50ms", "--for", "100ms")[1], 130)
+        err, code = ends("run", self.script("0s set travel distance=50cm angle=0rad speed=10cm/s\n0s led 1 red\n"))
+        self.assertEqual(code, 130)
+        self.assertIn("interrupted: travel was ended", err)
+        frame = {"id": ""}
+        while frame["id"] != "20B":
+            frame = json.loads(listener.stdout.readline())
+        self.assertEqual(frame["data"], "0000000000000000")
+
+    def test_a_bus_that_goes_during_the_wait(self):
+        sim = self.start_sim("--without", "light_ring")
+        listener = self.listen("--commands", "--timeout", "60s")
+        led = self.start("led", "1", "red")
+        while json.loads(listener.stdout.readline())["id"] != "357":
+            pass
+        self.interrupt(sim)
+        _, err = led.communicate(timeout=60)
+        self.assertEqual(led.returncode, 1, err)
+        self.assertIn("amiroctl: led: light_ring had not answered when the bus went: ", err)
+
+    def test_a_stop_of_a_travel_says_what_it_means(self):
+        self.start_sim("--without", "di_wheel_drive")
+        _, err = self.run_tool("stop", "travel", code=1)
+        self.assertIn(f"{silent('stop', 'di_wheel_drive')}; {MOVES}, to the end of its way", err)
 
 
 class OnAPlayedRobot(WithAdapter, WithScript):
