@@ -49,6 +49,7 @@ base::Result<bool> OperatedBus::send(const can::Frame& frame) {
   const std::string_view text = answer.text;
   const auto line = text.find('\n');
   const auto sent = can::parse_frame(text.substr(0, line));
+  forget_old_echoes();  // who only sends receives none
   echoes_.push_back({sent ? *sent : frame, Clock::now() + longest_echo});
   tell_limits(line == std::string_view::npos ? std::string_view{} : text.substr(line + 1));
   ++passed_on_;
@@ -72,9 +73,13 @@ void OperatedBus::tell_limits(std::string_view lines) {
   if (!unheard.empty()) remark(fmt::format("{}: {} limits {}", verb_, link_->who(), unheard));
 }
 
-bool OperatedBus::is_echo(const can::Frame& frame) {
+void OperatedBus::forget_old_echoes() {
   const auto now = Clock::now();
   while (!echoes_.empty() && echoes_.front().until < now) echoes_.pop_front();
+}
+
+bool OperatedBus::is_echo(const can::Frame& frame) {
+  forget_old_echoes();
   const auto found =
       std::find_if(echoes_.begin(), echoes_.end(), [&](const Echo& echo) { return echo.frame == frame; });
   if (found == echoes_.end()) return false;

@@ -54,6 +54,7 @@ class OperatedBus final : public transport::Bus, public Guarded {
   /// Whether the frame commands an actuator.
   [[nodiscard]] bool commands(const can::Frame& frame) const;
   [[nodiscard]] bool is_echo(const can::Frame& frame);
+  void forget_old_echoes();
   /// Says what the operator holds within limits, one in a line, each once.
   void tell_limits(std::string_view lines);
 
