@@ -111,8 +111,7 @@ std::string remedy(const client::Refused& refused) {
         topic.name);
   if (reason == "out_of_range")
     return fmt::format(
-        "it accepts less than the range that `amiroctl info {}` shows: the field's description in the spec "
-        "says what",
+        "it accepts less than the range that `amiroctl info {}` shows: the comments of the fields say what",
         topic.name);
   return "`amiroctl doctor` says which parts do not answer; when they do, it accepts the same again";
 }

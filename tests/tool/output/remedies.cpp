@@ -72,8 +72,8 @@ TEST_CASE("remedies: of each reason for which a board refuses") {
           "`amiroctl info gyroscope` says what this tool's spec accepts; `amiroctl doctor` says whether the "
           "board was built from another one");
   CHECK(of("out_of_range") ==
-        "it accepts less than the range that `amiroctl info gyroscope` shows: the field's description in the "
-        "spec says what");
+        "it accepts less than the range that `amiroctl info gyroscope` shows: the comments of the "
+        "fields say what");
   for (const char* const reason : {"no_sample", "no_answer", "bus_fault", ""})
     CHECK(of(reason) ==
           "`amiroctl doctor` says which parts do not answer; when they do, it accepts the same again");
