@@ -24,7 +24,7 @@ void PresenceWatch::sent(const client::Command& command) {
 
 std::vector<const protocol::Topic*> PresenceWatch::signs() const {
   if (waived_) return {};
-  return presence_.signs(*catalogue_);
+  return presence_.signs();
 }
 
 std::vector<const protocol::Topic*> PresenceWatch::questions() const {

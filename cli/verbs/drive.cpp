@@ -70,8 +70,8 @@ void declare_drive(Verb verb, Session& session, int& exit_code) {
     catch_hangups();
     catch_broken_pipe();
     const auto bus = open_to_command(session, "drive");
-    Timeline timeline{*bus,   options->commanding.catalogue(), "drive",
-                      others, options->commanding.confirm(),   {}};
+    const Commanding& commanding = options->commanding;
+    Timeline timeline{*bus, commanding.catalogue(), "drive", others, commanding.confirm(), {}};
     if (timeline.listen_first()) {
       if (options->once) {
         timeline.carry_out_once(command);
@@ -81,7 +81,7 @@ void declare_drive(Verb verb, Session& session, int& exit_code) {
       }
     }
     if (!timeline.finish()) exit_code = exit_failure;
-    exit_code = exit_code_after_interrupt(exit_code);  // also of one behind the end
+    exit_code = exit_code_after_interrupt(exit_code);  // also of a signal behind the end
   });
 }
 

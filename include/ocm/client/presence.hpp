@@ -24,7 +24,7 @@ class Presence {
  public:
   /// The catalogue must outlive it.
   explicit Presence(const protocol::Catalogue& catalogue)
-      : index_(catalogue), boards_(catalogue.boards.size()) {
+      : catalogue_(&catalogue), index_(catalogue), boards_(catalogue.boards.size()) {
     for (const protocol::Topic& topic : catalogue.topics)
       if (topic.role == protocol::Role::status && topic.board < boards_.size())
         boards_[topic.board].status = &topic;
@@ -44,9 +44,9 @@ class Presence {
   }
 
   /// All that the boards that were commanded can send: each of it shows that its board is there.
-  [[nodiscard]] std::vector<const protocol::Topic*> signs(const protocol::Catalogue& catalogue) const {
+  [[nodiscard]] std::vector<const protocol::Topic*> signs() const {
     std::vector<const protocol::Topic*> all;
-    for (const protocol::Topic& topic : catalogue.topics)
+    for (const protocol::Topic& topic : catalogue_->topics)
       if (topic.kind == protocol::Kind::sensor && topic.board < boards_.size() &&
           boards_[topic.board].commanded)
         all.push_back(&topic);
@@ -67,6 +67,7 @@ class Presence {
     bool heard = false;
   };
 
+  const protocol::Catalogue* catalogue_;
   FrameIndex index_;
   std::vector<Board> boards_;  ///< as the catalogue numbers them
 };

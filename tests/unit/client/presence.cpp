@@ -52,10 +52,10 @@ TEST_CASE("presence: each board that a set point is for, once") {
 
 TEST_CASE("presence: any sensor of a commanded board is a sign of it") {
   Presence presence{amiro::catalogue};
-  CHECK(presence.signs(amiro::catalogue).empty());
+  CHECK(presence.signs().empty());
   presence.sent(light);
   std::vector<std::string> signs;
-  for (const auto* topic : presence.signs(amiro::catalogue)) signs.emplace_back(topic->name);
+  for (const auto* topic : presence.signs()) signs.emplace_back(topic->name);
   CHECK(signs == std::vector<std::string>{"light_ring_status", "light_ring_refusal"});
 }
 
