@@ -24,10 +24,6 @@ using namespace ocm;
 using namespace ocm::test;
 using cli::LocalServer;
 
-can::Frame frame(std::string_view text) {
-  return *can::parse_frame(text);
-}
-
 /// The operator answers what it is to answer, in order; empty: it says nothing.
 class Bench {
  public:

@@ -18,12 +18,6 @@ constexpr const char* none_acknowledges =
     "          no node acknowledges the frames: is a board powered and connected, and is the bit rate the "
     "same?\n";
 
-can::Frame frame(std::string_view text) {
-  const auto parsed = can::parse_frame(text);
-  REQUIRE(parsed.ok());
-  return *parsed;
-}
-
 /// What it says as it leaves, and how long that took.
 struct Left {
   std::string text;

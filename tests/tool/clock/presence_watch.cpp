@@ -18,12 +18,6 @@ using cli::Confirm;
 using cli::Over;
 using cli::PresenceWatch;
 
-can::Frame frame(std::string_view text) {
-  const auto parsed = can::parse_frame(text);
-  REQUIRE(parsed.ok());
-  return *parsed;
-}
-
 constexpr const char* light = "23C#010203";
 constexpr const char* motors = "201#0100000000000000";
 // The first frame of a board's status, and another sample of the wheels' board. [spec/topics.json]
@@ -33,7 +27,7 @@ constexpr const char* wheels_refusal = "71D#0108010000000000";
 /// A watch and a bus on which frames come at their times.
 struct Bench {
   using Frames = std::vector<std::pair<Duration, const char*>>;
-  explicit Bench(const Frames& frames, Confirm confirm = Confirm::yes) : Bench(conditions(frames), confirm) {}
+  explicit Bench(const Frames& frames, Confirm confirm = Confirm::yes) : Bench(bus_with(frames), confirm) {}
   explicit Bench(PlayedBus::Conditions conditions, Confirm confirm = Confirm::yes)
       : bus(world, std::move(conditions)), watch(amiro::catalogue, "led", confirm) {}
 
@@ -59,11 +53,6 @@ struct Bench {
     Captured said{STDERR_FILENO};
     const bool any = watch.tell(otherwise);
     return (any ? "true: " : "false: ") + said.text();
-  }
-  static PlayedBus::Conditions conditions(const Frames& frames) {
-    PlayedBus::Conditions conditions;
-    for (const auto& [at, text] : frames) conditions.incoming.push_back({World::start + at, frame(text)});
-    return conditions;
   }
 
   World world{1};
@@ -91,7 +80,7 @@ TEST_CASE("presence: a board that does not is named, with what that means for th
       "true: amiroctl: led: light_ring does not answer, so nothing shows that it has done it\n"
       "          is it powered and on can0? `amiroctl doctor` says which boards are there; --no-confirm does "
       "not ask\n");
-  Bench both{Bench::Frames{}};
+  Bench both{Frames{}};
   CHECK(both.listens({light, motors, light}) == 2000);
   CHECK(both.asked() == std::vector<std::string>{"31B#02", "357#02"});
   CHECK(both.tells("IT MAY MOVE") ==
@@ -102,13 +91,13 @@ TEST_CASE("presence: a board that does not is named, with what that means for th
 }
 
 TEST_CASE("presence: of a stop the wheels' board is asked alone") {
-  Bench bench{Bench::Frames{}};
+  Bench bench{Frames{}};
   CHECK(bench.listens({"201#0000000000000000", "23C#000000"}, true) == 2000);
   CHECK(bench.asked() == std::vector<std::string>{"31B#02"});
 }
 
 TEST_CASE("presence: a board that was heard is not asked") {
-  Bench bench{Bench::Frames{}};
+  Bench bench{Frames{}};
   bench.watch.take({{}, frame(light_status)});
   CHECK(bench.listens({light}) == 0);
   CHECK(bench.asked().empty());
@@ -116,8 +105,8 @@ TEST_CASE("presence: a board that was heard is not asked") {
 }
 
 TEST_CASE("presence: with --no-confirm, or a caller that says it, none is asked") {
-  Bench unconfirmed{Bench::Frames{}, Confirm::no};
-  Bench waived{Bench::Frames{}};
+  Bench unconfirmed{Frames{}, Confirm::no};
+  Bench waived{Frames{}};
   waived.watch.waive();
   for (Bench* const bench : {&unconfirmed, &waived}) {
     CHECK(bench->listens({light}) == 0);

@@ -18,17 +18,10 @@ using namespace ocm::test;
 using cli::Confirm;
 using cli::RefusalWatch;
 
-can::Frame frame(std::string_view text) {
-  const auto parsed = can::parse_frame(text);
-  REQUIRE(parsed.ok());
-  return *parsed;
-}
-
 /// A watch and a bus that has the refusals at their times.
 struct Bench {
-  using Refusals = std::vector<std::pair<Duration, const char*>>;
-  explicit Bench(const Refusals& refusals, Confirm confirm = Confirm::yes)
-      : bus(world, conditions(refusals)), watch(amiro::catalogue, "set", confirm) {}
+  explicit Bench(const Frames& refusals, Confirm confirm = Confirm::yes)
+      : bus(world, bus_with(refusals)), watch(amiro::catalogue, "set", confirm) {}
 
   /// Sends them, and listens; how long, in ms.
   std::int64_t listens(const std::vector<can::Frame>& frames) {
@@ -43,11 +36,6 @@ struct Bench {
     Captured said{STDERR_FILENO};
     const bool any = watch.tell();
     return (any ? "true: " : "false: ") + said.text();
-  }
-  static PlayedBus::Conditions conditions(const Refusals& refusals) {
-    PlayedBus::Conditions conditions;
-    for (const auto& [at, text] : refusals) conditions.incoming.push_back({World::start + at, frame(text)});
-    return conditions;
   }
 
   World world{1};

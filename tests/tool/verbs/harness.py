@@ -55,6 +55,13 @@ class Case(RealTime):
             process.communicate()
         self._folder.cleanup()
 
+    def script(self, text):
+        """The path of a file with these lines, for `run`."""
+        path = os.path.join(self.folder, "steps.script")
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(text)
+        return path
+
     def start(self, *arguments, **options):
         streams = {"stdin": subprocess.DEVNULL, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
         process = waiting.Program([AMIROCTL, *arguments], env=self.environment, text=True, **(streams | options))

@@ -395,12 +395,6 @@ class Several(Case):
 
 
 class Scripts(Case):
-    def script(self, text):
-        path = os.path.join(self.folder, "steps.script")
-        with open(path, "w", encoding="utf-8") as file:
-            file.write(text)
-        return path
-
     def test_a_script_is_checked_whole_before_anything_is_sent(self):
         self.start_sim()
         listener = self.listen("--commands", "--timeout", "20s")

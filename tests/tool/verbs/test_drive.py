@@ -17,12 +17,6 @@ OTHER = "another program commands motors: " + FORWARDS
 
 
 class Drive(Case):
-    def script(self, text):
-        path = os.path.join(self.folder, "test.script")
-        with open(path, "w", encoding="utf-8") as file:
-            file.write(text)
-        return path
-
     def driving(self, *arguments):
         """A drive that goes on: one that begins now could have heard it."""
         listener = self.listen("motors", "--timeout", "20s")

@@ -1,6 +1,5 @@
 """What a board refuses ends the verb that asked for it with 1, the reason and what would be accepted."""
 
-import os
 import time
 
 from harness import Case, main
@@ -16,12 +15,6 @@ class OnARobotThatRefuses(WithAdapter, Case):
     def robot(self, script):
         self.played = self.adapter(script=script)
         return ("--bus", f"slcan:{self.played.path}")
-
-    def script(self, text):
-        path = os.path.join(self.folder, "test.script")
-        with open(path, "w", encoding="utf-8") as file:
-            file.write(text)
-        return path
 
     def test_each_verb_says_what_is_refused_and_why(self):
         bus = self.robot({"208#02": [refusal(0x08, NOT_SERVED)],

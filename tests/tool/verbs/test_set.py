@@ -17,12 +17,6 @@ class Set(Case):
         self.assertIn("bus: sim", listener.stderr.readline())
         return listener
 
-    def script(self, text):
-        path = os.path.join(self.folder, "steps.script")
-        with open(path, "w", encoding="utf-8") as file:
-            file.write(text)
-        return path
-
     def heard(self, listener):
         out, _ = self.interrupt(listener)
         return [json.loads(line) for line in out.splitlines()]

@@ -16,15 +16,7 @@ def silent(verb, board):
     return f"amiroctl: {verb}: {board} does not answer, so nothing shows that it has done it"
 
 
-class WithScript(Case):
-    def script(self, text):
-        path = os.path.join(self.folder, "test.script")
-        with open(path, "w", encoding="utf-8") as file:
-            file.write(text)
-        return path
-
-
-class OnTheSimulatedRobot(WithScript):
+class OnTheSimulatedRobot(Case):
     def test_each_verb_that_sets_something_names_the_board(self):
         self.start_sim("--without", "light_ring")
         for verb in (("led", "1", "red"), ("led", "all", "off"), ("set", "led_3", "red=1"),
@@ -100,7 +92,7 @@ class OnTheSimulatedRobot(WithScript):
         self.assertIn(f"{silent('stop', 'di_wheel_drive')}; {MOVES}, to the end of its way", err)
 
 
-class OnAPlayedRobot(WithAdapter, WithScript):
+class OnAPlayedRobot(WithAdapter, Case):
     def robot(self, script):
         self.played = self.adapter(script=script)
         return ("--bus", f"slcan:{self.played.path}")
