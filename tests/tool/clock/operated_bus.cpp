@@ -16,7 +16,7 @@
 
 #include "cli/shared/local_server.hpp"
 #include "tests/tool/captured.hpp"
-#include "tests/tool/clock/played_bus.hpp"
+#include "tests/tool/clock/typed_frames.hpp"
 
 namespace tool_clock_operated_bus_test {
 

@@ -5,7 +5,7 @@
 
 #include "cli/shared/messages.hpp"
 #include "tests/tool/captured.hpp"
-#include "tests/tool/clock/played_bus.hpp"
+#include "tests/tool/clock/typed_frames.hpp"
 
 namespace tool_clock_outgoing_test {
 

@@ -10,7 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include "ocm/can/text.hpp"
 #include "ocm/transport/bus.hpp"
 
 #include "tests/tool/clock/world.hpp"
@@ -160,20 +159,5 @@ class PlayedBus final : public transport::Bus {
   transport::BusCounters counters_;
   transport::Failure failure_;
 };
-
-/// As candump writes it.
-inline can::Frame frame(std::string_view text) {
-  const auto parsed = can::parse_frame(text);
-  REQUIRE(parsed.ok());
-  return *parsed;
-}
-
-/// What comes from others, and when, from the start.
-using Frames = std::vector<std::pair<Duration, const char*>>;
-inline PlayedBus::Conditions bus_with(const Frames& frames) {
-  PlayedBus::Conditions conditions;
-  for (const auto& [at, text] : frames) conditions.incoming.push_back({World::start + at, frame(text)});
-  return conditions;
-}
 
 }  // namespace ocm::test

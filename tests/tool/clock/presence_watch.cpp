@@ -8,7 +8,7 @@
 #include "ocm/topics/amiro.hpp"
 
 #include "tests/tool/captured.hpp"
-#include "tests/tool/clock/played_bus.hpp"
+#include "tests/tool/clock/typed_frames.hpp"
 
 namespace tool_clock_presence_watch_test {
 
@@ -26,7 +26,6 @@ constexpr const char* wheels_refusal = "71D#0108010000000000";
 
 /// A watch and a bus on which frames come at their times.
 struct Bench {
-  using Frames = std::vector<std::pair<Duration, const char*>>;
   explicit Bench(const Frames& frames, Confirm confirm = Confirm::yes) : Bench(bus_with(frames), confirm) {}
   explicit Bench(PlayedBus::Conditions conditions, Confirm confirm = Confirm::yes)
       : bus(world, std::move(conditions)), watch(amiro::catalogue, "led", confirm) {}
