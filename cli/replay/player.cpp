@@ -185,12 +185,12 @@ void Player::watch_until(base::Time time) {
 }
 
 void Player::print(const log::Entry& entry, const log::Interfaces& interfaces) {
-  if (entry.format == can::Format::error) {
-    ++played_.error_frames;
-    return;
-  }
   if (!route(entry.interface, interfaces)) {
     ++played_.no_route;
+    return;
+  }
+  if (entry.format == can::Format::error) {
+    ++played_.error_frames;
     return;
   }
   log::Entry printed = entry;

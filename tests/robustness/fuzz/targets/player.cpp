@@ -203,7 +203,7 @@ class Scene {
 
   void take(const log::Entry& entry, const log::Interfaces& interfaces, Due& due) {
     std::size_t bus = 0;
-    if (!prints_ && !options_.routes.empty()) {
+    if (!options_.routes.empty()) {
       const auto name = interfaces.name(entry.interface);
       while (bus < options_.routes.size() && options_.routes[bus].first != name) ++bus;
       if (bus == options_.routes.size()) {
@@ -291,11 +291,12 @@ class Scene {
     fuzz::expect(last == nullptr || cli::is_rest(*last), "motors rest after a replay that was cut short");
   }
 
-  /// Printed instead of sent: the same frames, at the times at which they would be sent.
+  /// Printed instead of sent: the frames of the routes, at the times at which they would be sent.
   void judge_text(const replay::Player& player) const {
     const auto& played = player.played();
     fuzz::expect(played.sent == expected_.counts.sent && played.not_chosen == expected_.counts.not_chosen &&
-                     played.error_frames == expected_.counts.error_frames,
+                     played.error_frames == expected_.counts.error_frames &&
+                     played.no_route == expected_.counts.no_route,
                  "an entry is printed as it should be");
     log::MemorySource source{printed_};
     log::Input input{source};
