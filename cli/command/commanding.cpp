@@ -76,17 +76,17 @@ void carry_out(Session& session, const Commanding& commanding, const client::Com
   outgoing.expect_all_left();
   refusals.sent(frames);
   refusals.listen(*bus, [&](const can::Received& received) { presence.take(received); });
+  catch_interrupts();  // the wait is long enough for one
   presence.ask(*bus, outgoing);
   Live live{*bus};
   const Over over = presence.listen(live, [&](const can::Received& received) {
     presence.take(received);
     refusals.take(received);
   });
-  if (over == Over::signal) throw Exit{exit_code_after_interrupt(exit_failure)};
   if (command.ends_hold) refusals.forgive_unserved();
   const bool silent = presence.tell(otherwise);
   refusals.leave_if_refused();
-  if (silent) throw Exit{exit_failure};
+  if (silent || over == Over::signal) throw Exit{exit_code_after_interrupt(exit_failure)};
 }
 
 void declare_command_verb(Verb verb, Session& session, std::string_view description, std::string_view group,

@@ -61,7 +61,7 @@ Over PresenceWatch::listen(Live& live, const std::function<void(const can::Recei
     take(received);
     return !silent().empty();
   });
-  if (over == Over::signal) waived_ = true;
+  cut_short_ = over == Over::signal;
   return over;
 }
 
@@ -79,6 +79,9 @@ bool PresenceWatch::tell(std::string_view otherwise) {
     complain({fmt::format("{}: {} had not answered when the bus went: {}; {}", verb_, boards,
                           bus_->failure().what, unknown),
               bus_->failure().remedy});
+  else if (cut_short_)
+    complain({fmt::format("{}: interrupted before {} answered, {}", verb_, boards, unknown),
+              "--no-confirm does not wait for an answer"});
   else if (!takes_)
     complain({fmt::format("{}: {} could not be asked, {}", verb_, boards, unknown), why_none_leaves(*bus_)});
   else

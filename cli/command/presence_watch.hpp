@@ -60,7 +60,8 @@ class PresenceWatch {
   const transport::Bus* bus_ = nullptr;  ///< that of `ask`
   bool waived_;
   std::vector<const protocol::Topic*> asked_;
-  bool takes_ = true;  ///< the bus has taken the questions
+  bool takes_ = true;       ///< the bus has taken the questions
+  bool cut_short_ = false;  ///< a signal came before all had answered
 };
 
 }  // namespace ocm::cli

@@ -1,6 +1,7 @@
 // Whom a verb asks whether it is there, how long it waits for that, and what it says.
 #include "cli/command/presence_watch.hpp"
 
+#include <csignal>
 #include <string>
 #include <vector>
 
@@ -113,6 +114,16 @@ TEST_CASE("presence: with --no-confirm, or a caller that says it, none is asked"
     CHECK(bench->asked().empty());
     CHECK(bench->tells() == "false: ");
   }
+}
+
+TEST_CASE("presence: a signal ends the wait, and the board that had not answered is named") {
+  Bench bench{{{10ms, wheels_refusal}, {20ms, light_status}}};
+  bench.world.interrupt(World::start + 500ms, SIGINT);
+  CHECK(bench.listens({light, motors}) / 100 == 5);
+  CHECK(bench.over == Over::signal);
+  CHECK(bench.tells("IT MAY MOVE") ==
+        "true: amiroctl: led: interrupted before di_wheel_drive answered, so nothing shows that it has done "
+        "it; IT MAY MOVE\n          --no-confirm does not wait for an answer\n");
 }
 
 TEST_CASE("presence: a bus that goes meanwhile is named, and not the board") {
