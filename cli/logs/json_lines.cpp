@@ -84,7 +84,7 @@ bool JsonLineParser::parse(std::string_view line, log::Entry& entry, std::string
   if (!(record_.id ? take_id(entry, meaning) : take_topic(entry, meaning))) return false;
   if (!take_data(entry, meaning) || !take_extras(entry)) return false;
   if (record_.has_fields && !put_fields(entry, meaning)) return false;
-  last_ = entry.time;
+  if (record_.time) last_ = entry.time;
   return true;
 }
 
@@ -200,7 +200,7 @@ bool JsonLineParser::scan_fd(JsonScanner& scanner) {
 }
 
 bool JsonLineParser::take_time(log::Entry& entry) {
-  entry.time = last_;
+  entry.time = last_.value_or(base::Time{});
   if (!record_.time) return true;
   std::string_view text = record_.time.text;
   const bool negative = text.starts_with('-');

@@ -63,6 +63,10 @@ class JsonLineParser {
   /// line and until the next). A line without `time_ns` has the time of the one before. false: `problem`.
   [[nodiscard]] bool parse(std::string_view line, log::Entry& entry, std::string_view& bus);
   [[nodiscard]] const JsonProblem& problem() const noexcept { return problem_; }
+  /// The time of a line between these that another parser has read.
+  void follow(base::Time time) noexcept { last_ = time; }
+  /// That of the last line that had one.
+  [[nodiscard]] std::optional<base::Time> last_time() const noexcept { return last_; }
   /// What was passed over, in the order in which it came; of more than 64 the first 64,
   [[nodiscard]] std::span<const UnknownKey> unknown_keys() const noexcept { return unknown_; }
   /// and how often others came.
@@ -141,7 +145,7 @@ class JsonLineParser {
     std::int64_t raw;
   };
   std::vector<Given> given_;  // by the line, other than its data has them; of a layout that overlaps
-  base::Time last_{};
+  std::optional<base::Time> last_;
   std::string bus_;
   JsonProblem problem_;
   std::vector<UnknownKey> unknown_;

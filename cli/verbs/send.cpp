@@ -85,7 +85,7 @@ void send_lines(Session& session, const SendOptions& options, bool dry_run, int&
         ++fd;
         continue;
       }
-      if (options.timed && !pace.wait_for(entry.time)) break;
+      if (options.timed && lines.has_time() && !pace.wait_for(entry.time)) break;
       if (dry_run)
         fmt::print("{}\n", can::to_text(frame).view());
       else

@@ -93,9 +93,10 @@ bool FrameLines::parse_log_line(std::string_view line, log::Entry& entry, std::s
     entry = parsed.entry;
     bus = parsed.interface;
     wrong = parsed.wrong;
+    if (!wrong) json_.follow(entry.time);
   } else {
     const auto frame = can::parse_any_frame(line.substr(0, line.find_last_not_of(" \t") + 1));
-    entry = log::Entry{{}, *frame};
+    entry = log::Entry{json_.last_time().value_or(base::Time{}), *frame};
     bus = {};
     if (!frame) wrong = log::candump::cause_of(frame.error);
   }

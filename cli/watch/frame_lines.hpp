@@ -25,6 +25,8 @@ class FrameLines {
   /// The next frame; waits for it. `bus` is empty where the line does not say, and holds until the next call.
   /// false: the end, a signal, or a bad line.
   [[nodiscard]] bool next(log::Entry& entry, std::string_view& bus);
+  /// Whether that frame has a time: its line's, or of a line before it.
+  [[nodiscard]] bool has_time() const noexcept { return json_.last_time().has_value(); }
   /// Whether anything is there without waiting.
   [[nodiscard]] bool more_here() const noexcept { return input_.here() != 0; }
   /// Whether some line could not be read, or the input ended early.

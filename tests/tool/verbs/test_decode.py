@@ -5,6 +5,7 @@ import json
 import os
 import re
 import subprocess
+import time
 
 from harness import AMIROCTL, SOURCE, Case, main, sanitized, waiting
 
@@ -538,6 +539,14 @@ class Send(Case):
         self.assertIn("1 error frame left out, which only reports", err)
         self.run_tool("send", "--stdin", "605#01", code=2)
         self.run_tool("send", "--timed", "605#01", code=2)
+
+    def test_a_line_without_a_time_follows_the_one_before(self):
+        lines = ('605#01\n{"id":"605","data":"02"}\n(1700000000.000000) can0 605#03\n605#04\n{"id":"605","data":"05"}\n'
+                 '{"time_ns":1700000000300000000,"id":"605","data":"06"}\n605#07\n')
+        begin = time.monotonic()
+        out, _ = self.run_tool("send", "--stdin", "--timed", "--dry-run", stdin=lines)
+        self.assertEqual(out.split(), [f"605#0{i}" for i in range(1, 8)])
+        self.assertGreaterEqual(time.monotonic() - begin, 0.3)
 
     def test_what_listen_prints_is_sent(self):
         self.start_sim()
