@@ -55,15 +55,24 @@ bool Broadcasts::is_over(const Each& each, Moment now) const noexcept {
 bool Broadcasts::is_due(Each& each, Moment now) {
   if (each.at == 0 && each.begin >= each.end) return false;
   if (now < due(each)) return false;
-  if (each.at != 0) {
-    if (now - each.left <= j1939::timeout::t1) return true;
-    each.at = 0;  // listeners wait no longer for the rest
-    // It begins again, or is the first of the turns that are left out.
-    const std::uint64_t over = each.period.count() == 0 ? 0 : leave_out(each, now);
-    counts_.late += std::max<std::uint64_t>(over, 1);
-    return each.begin < each.end && now >= due(each);  // unless another has taken its place
+  if (each.at == 0) {
+    skip_missed_turns(each, now);
+    return each.begin < each.end;
   }
-  if (each.period.count() == 0 || each.held_up) return true;
+  if (now - each.left <= j1939::timeout::t1) return true;
+  give_up_round(each, now);
+  return each.begin < each.end && now >= due(each);  // unless another has taken its place
+}
+
+void Broadcasts::give_up_round(Each& each, Moment now) {
+  each.at = 0;
+  // It begins again, or is the first of the turns that are left out.
+  const std::uint64_t over = each.period.count() == 0 ? 0 : leave_out(each, now);
+  counts_.late += std::max<std::uint64_t>(over, 1);
+}
+
+void Broadcasts::skip_missed_turns(Each& each, Moment now) {
+  if (each.period.count() == 0 || each.held_up) return;
   const std::uint8_t source = source_of(each.broadcast);
   // Where its own round was the last of the source, no other message has made it wait.
   const bool alone = free_[source] == each.left + j1939::broadcast_distance;
@@ -72,7 +81,6 @@ bool Broadcasts::is_due(Each& each, Moment now) {
   const std::uint64_t over = leave_out(each, now);
   counts_.late += std::min(over, late);
   counts_.waited += over - std::min(over, late);
-  return each.begin < each.end;
 }
 
 std::uint64_t Broadcasts::leave_out(Each& each, Moment now) {

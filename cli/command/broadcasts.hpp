@@ -95,8 +95,12 @@ class Broadcasts {
   [[nodiscard]] Moment due(const Each& each) const noexcept;
   /// Whether nothing of it will be sent any more.
   [[nodiscard]] bool is_over(const Each& each, Moment now) const noexcept;
-  /// Leaves turns out that are over.
+  /// Whether its next frame goes now. What is too late for that is given up or skipped, and counted.
   [[nodiscard]] bool is_due(Each& each, Moment now);
+  /// A round under way, of which listeners await no more.
+  void give_up_round(Each& each, Moment now);
+  /// A turn that the bus holds up is none of them.
+  void skip_missed_turns(Each& each, Moment now);
   /// Of the turns that are over the last becomes the next round, unless it is at the end or later. How many
   /// are left out. It has a period.
   static std::uint64_t leave_out(Each& each, Moment now);

@@ -191,18 +191,45 @@ void expect_any(const replay::Player& player, const ReplayOptions& options) {
     fail({fmt::format("replay: {} has no frame that can be sent there", log), ""});
 }
 
+void expect_playable(const ReplayOptions& options) {
+  if (options.passes != 1 && options.file == "-")
+    fail({"replay: --loop needs a file", "what came on the standard input is gone"}, exit_usage);
+  if (options.passes != 1 && options.dry_run)
+    fail({"replay: --dry-run plays once", "drop --loop"}, exit_usage);
+  if (options.dry_run) refuse_same_file("replay", options.file, "-");
+}
+
+/// As often as --loop says. Whether the log is damaged, which is said.
+bool play_passes(replay::Player& player, const ReplayOptions& options, const protocol::Catalogue& catalogue,
+                 std::unique_ptr<logs::OpenedLog> log) {
+  bool damaged = false;
+  for (std::uint64_t pass = 1;; ++pass) {
+    const std::uint64_t sent_before = player.played().sent;
+    player.play(log->reader());
+    if (pass == 1) damaged = log->complain();
+    const bool last = options.passes != 0 && pass == options.passes;
+    // A pass without a frame takes no time: more of them would never end.
+    if (last || interrupted() != 0 || player.held_up() || player.played().sent == sent_before) return damaged;
+    log = std::make_unique<logs::OpenedLog>(options.file, options.from_format, catalogue);
+  }
+}
+
+/// Where the log was not played to its end, what would have ended a drive or a behaviour was not sent.
+void end_what_was_begun(replay::Player& player, bool cut_short) {
+  const bool rested = cut_short && player.rest();
+  const auto ended = cut_short ? player.end_behaviours() : std::vector<std::string>{};
+  player.expect_all_left();
+  if (rested) remark("the motors were set to zero: the log goes on behind this");
+  for (const std::string& names : ended) remark(fmt::format("{} ended: the log goes on behind this", names));
+}
+
 void play(Session& session, const ReplayOptions& options, int& exit_code) {
   const auto& catalogue = session.catalogue();
   auto chosen = player_options(options);
   replay::Selection selection{catalogue, chosen_topics("replay", catalogue, options.topics),
                               parse_only(options.only)};
   const auto buses = buses_of(parse_routes(options.interfaces), chosen);
-  if (options.passes != 1 && options.file == "-")
-    fail({"replay: --loop needs a file", "what came on the standard input is gone"}, exit_usage);
-  if (options.passes != 1 && options.dry_run)
-    fail({"replay: --dry-run plays once", "drop --loop"}, exit_usage);
-
-  if (options.dry_run) refuse_same_file("replay", options.file, "-");
+  expect_playable(options);
   catch_interrupts();
   catch_hangups();
   auto log = std::make_unique<logs::OpenedLog>(options.file, options.from_format, catalogue);
@@ -215,23 +242,8 @@ void play(Session& session, const ReplayOptions& options, int& exit_code) {
   replay::Player player{std::move(chosen), std::move(selection), std::move(outlets), std::move(printer)};
   bool damaged = false;
   try {
-    for (std::uint64_t pass = 1;; ++pass) {
-      const std::uint64_t sent_before = player.played().sent;
-      player.play(log->reader());
-      if (pass == 1) damaged = log->complain();
-      const bool last = options.passes != 0 && pass == options.passes;
-      // A pass without a frame takes no time: more of them would never end.
-      if (last || interrupted() != 0 || player.held_up() || player.played().sent == sent_before) break;
-      log = std::make_unique<logs::OpenedLog>(options.file, options.from_format, catalogue);
-    }
-    // Where the log was not played to its end, the set point that would have ended a drive is not sent.
-    const bool cut_short = player.cut_short() || damaged;
-    const bool rested = cut_short && player.rest();
-    const auto ended = cut_short ? player.end_behaviours() : std::vector<std::string>{};
-    player.expect_all_left();
-    if (rested) remark("the motors were set to zero: the log goes on behind this");
-    for (const std::string& names : ended)
-      remark(fmt::format("{} ended: the log goes on behind this", names));
+    damaged = play_passes(player, options, catalogue, std::move(log));
+    end_what_was_begun(player, player.cut_short() || damaged);
   } catch (const Exit&) {  // the bus took no more: what was sent is reported all the same
     for (const std::string& otherwise : player.end_after_all()) remark("replay: " + otherwise);
     if (!options.dry_run) summarise(player, false);
