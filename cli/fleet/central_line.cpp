@@ -9,10 +9,12 @@
 #include "ocm/transport/pty.hpp"
 #include "ocm/transport/virtual_bus.hpp"
 
+#include "cli/fleet/line_request.hpp"
 #include "cli/fleet/line_time.hpp"
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/messages.hpp"
 #include "cli/shared/values.hpp"
+#include "cli/words/quantity.hpp"
 
 namespace ocm::cli::fleet {
 namespace {
@@ -137,6 +139,11 @@ std::unique_ptr<JoinedLine> join_line(std::string_view verb, const LineOptions& 
 CentralLine::CentralLine(std::string_view verb, const LineOptions& options, Need need,
                          const cognitive::FleetOptions& fleet)
     : verb_(verb), scan_(options.scan) {
+  if (scan_ > longest_scan)
+    fail({fmt::format("{}: --scan {}: a central that looks for robots says nothing to those that it has",
+                      verb, words::to_text(*scan_)),
+          fmt::format("write at most {}", words::to_text(longest_scan))},
+         exit_usage);
   catch_interrupts();
   catch_hangups();
   end_ = open_end(verb, options, need, fleet);
@@ -175,7 +182,7 @@ bool CentralLine::wait(base::Duration limit, const std::function<bool()>& done) 
 void CentralLine::list(base::Duration scan) {
   (void)end_->take_failed();
   end_->scan(scan);
-  (void)wait(request_timeout, [this] { return end_->idle(); });
+  (void)wait(scan + request_timeout, [this] { return end_->idle(); });
   if (const auto failed = end_->take_failed(); !failed.empty())
     fail({fmt::format("{}: {}: {}", verb_, end_->path(), failed.front()),
           "is it a central? Unplug the dongle and plug it in again, or restart the simulation"});
@@ -234,7 +241,8 @@ std::vector<unsigned> CentralLine::connect(const std::vector<std::string>& names
     meant.push_back(robot(index).address);
     end_->connect(index);
   }
-  (void)wait(request_timeout, [this] { return end_->idle(); });
+  // One after the other: of one that is silent its own time-out is waited for.
+  (void)wait(static_cast<int>(wanted.size()) * request_timeout, [this] { return end_->idle(); });
   for (const std::string& words : end_->take_failed()) {
     if (wanted.size() == 1)
       fail({fmt::format("{}: {}", verb_, words), "is it near enough? `amiroctl robots` lists robots"});

@@ -16,7 +16,7 @@ void link_all(CentralLine& line, const std::function<void(const std::string&)>& 
   const auto peers = line.scan();
   if (peers.empty()) say("no robots yet: `amiroctl robots --scan 3s` looks again");
   for (const mapper::server::Peer& peer : peers) line.end().connect(peer.index);
-  (void)line.wait(60s, [&line] { return line.end().idle(); });
+  (void)line.wait(static_cast<int>(peers.size()) * 60s, [&line] { return line.end().idle(); });
   for (const std::string& words : line.end().take_failed()) say(words);
 }
 

@@ -35,8 +35,6 @@ constexpr std::array<Form, 17> forms{{{"robots", Ask::robots, ""},
                                       {"map", Ask::map, "f"},
                                       {"more", Ask::more, "o"}}};
 constexpr std::array<std::string_view, 6> map_forms{"svg", "png", "pdf", "pgm", "yaml", "grid"};
-/// For all other programs wait for it.
-constexpr std::int64_t longest_scan_ms = 60'000;
 
 template <class Number>
 bool read(std::string_view text, Number& value, std::int64_t least, std::int64_t most) {
@@ -59,7 +57,7 @@ bool read(char what, std::string_view text, LineRequest& request) {
     case 'd':
       return read(text, request.set_point.distance, fields[1].min, fields[1].max);
     case 't':
-      if (!read(text, milliseconds, 0, longest_scan_ms)) return false;
+      if (!read(text, milliseconds, 0, std::chrono::milliseconds{longest_scan}.count())) return false;
       request.time = std::chrono::milliseconds{milliseconds};
       return true;
     case 'o':

@@ -2,6 +2,7 @@
 /// (cli/shared/local_link.hpp). docs/cognitive.md lists them.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -11,6 +12,9 @@
 #include "ocm/mapper/link/sentences.hpp"
 
 namespace ocm::cli::fleet {
+
+/// A central that looks for robots says nothing to those that it has, and all other programs wait for it.
+inline constexpr std::chrono::seconds longest_scan{60};
 
 struct LineRequest {
   enum class Kind : std::uint8_t {

@@ -28,7 +28,7 @@ struct MapOptions {
   std::string world;
   std::string title;
   double resolution_cm = 4;
-  double range_m = 0;
+  double range_m = 0;  ///< 0: that of the world, or none
   bool watch = false;
   bool json = false;
 };

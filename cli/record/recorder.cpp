@@ -105,8 +105,8 @@ void Recorder::run() {
 }
 
 void Recorder::receive() {
-  const auto end =
-      limits_.duration > base::Duration::zero() ? begin_ + limits_.duration : Clock::time_point::max();
+  const auto end = limits_.duration > base::Duration::zero() ? time_after(begin_, limits_.duration)
+                                                             : Clock::time_point::max();
   while (interrupted() == 0 && !writing_.failed() && ended_.what.empty()) {
     const std::size_t count = drain();
     if (limits_.count != 0 && received_ >= limits_.count) break;
@@ -115,7 +115,7 @@ void Recorder::receive() {
     if (live_ || now - handed_over_ >= hand_over_period) hand_over();
     if (now - looked_ >= look_period) look();
     if (on_terminal_ && now - shown_ >= seconds{1}) show_progress();
-    if (count < busy) wait();
+    if (count < busy) wait(end - now);
   }
   // What came before the end is recorded; what comes now is not.
   if (limits_.count == 0) drain_to_the_end();
@@ -259,10 +259,11 @@ void Recorder::reopen(Port& port) {
   remark(fmt::format("{} is back", port.name));
 }
 
-/// For frames, and a little longer, so that they come in bunches.
-void Recorder::wait() {
-  auto limit = longest_wait;
+/// For frames, and a little longer, so that they come in bunches; no longer than is left.
+void Recorder::wait(base::Duration left) {
+  base::Duration limit = longest_wait;
   if (block_ != nullptr && block_->count != 0) limit = hand_over_period;
+  limit = std::min(limit, left);
   std::array<pollfd, 64> entries{};
   std::size_t count = 0;
   for (const Port& port : ports_) {

@@ -82,7 +82,7 @@ class Recorder {
   void look();
   void look(Port& port);
   void reopen(Port& port);
-  void wait();
+  void wait(base::Duration left);
   void show_progress();
 
   std::vector<Port> ports_;

@@ -19,6 +19,7 @@
 #include "ocm/protocol/message.hpp"
 #include "ocm/protocol/request.hpp"
 
+#include "cli/shared/clock.hpp"
 #include "cli/shared/fitted.hpp"
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/json.hpp"
@@ -111,14 +112,18 @@ class Examination {
   template <class Done>
   void listen(base::Duration duration, Done done) {
     if (done()) return;
-    live_.receive_or_leave(Live::Clock::now() + duration, [&](const can::Received& received) {
-      if (can::lost_in_controller(received.frame)) ++overflows_;
-      const auto reception = receiver_.take(received);
+    const auto end = time_after(Live::Clock::now(), duration);
+    const Over over = live_.receive_any(end, [&](const transport::ReceivedAny& received) {
+      const auto classic = received.frame.classic();
+      if (classic && can::lost_in_controller(*classic)) ++overflows_;
+      const auto reception = receiver_.take(received.frame.view(), received.time);
       diagnosis_.take(reception);
-      commanders_.take(received, reception);
+      if (classic) commanders_.take({received.time, *classic}, reception);
       messages_.take(reception);
       return !done();
     });
+    if (over == Over::gone) fail(bus_->failure());
+    if (over == Over::signal) throw Exit{exit_code_after_interrupt(exit_failure)};
   }
 
   /// Who has not spoken by himself is asked, twice at most. What is published is waited for and not asked:

@@ -142,7 +142,8 @@ void declare_map(Verb verb, Session& session, int& exit_code) {
       .type_name("CM")
       .show_default();
   verb.add_option("--range", options->range_m, "range of the central's radio in m: no robot is sent farther")
-      .type_name("M");
+      .type_name("M")
+      .range(0.1, 10'000.0);
   verb.add_option("--title", options->title, "default: the robots").type_name("TEXT");
   verb.add_flag("--watch", options->watch,
                 "draw only: what another `amiroctl map` draws, or while a server elsewhere drives");

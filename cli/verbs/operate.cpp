@@ -106,9 +106,17 @@ int run(const OperateOptions& options, Session& session, std::uint32_t bit_rate)
   how.bit_rate = bit_rate;
   how.black_box = options.black_box;
   operate::Runner runner{*bus, *control, catalogue, *file, how};
-  const Over over = runner.run();
-  if (over == Over::signal) runner.rest();
+  Over over = Over::enough;
+  std::optional<Exit> left;
+  try {
+    over = runner.run();
+    if (over == Over::signal) runner.rest();
+  } catch (
+      const Exit& exit) {  // it is said why; what was counted, and the black box's end, come all the same
+    left = exit;
+  }
   runner.sum_up();
+  if (left) throw *left;
   if (over == Over::gone) fail(bus->failure());
   return exit_code_after_interrupt(exit_success);
 }

@@ -164,7 +164,7 @@ int show_live(Verb verb, Session& session, const PlotOptions& options, const Wor
   shown.web.port = static_cast<std::uint16_t>(options.port);
   shown.opens = options.opens;
   shown.shows = std::move(shows);
-  const auto end = Clock::now() + options.watch.duration.value_or(base::Duration{});
+  const auto end = time_after(Clock::now(), options.watch.duration.value_or(base::Duration{}));
   if (options.watch.duration) shown.over = [end] { return Clock::now() >= end; };
   return serve::run(session, std::move(shown));
 }

@@ -45,7 +45,7 @@ void print_table(const fleet::CentralLine& line, const std::vector<Peer>& peers)
   }
 }
 
-void run(const RobotsOptions& options, int& exit_code) {
+void run(const RobotsOptions& options) {
   fleet::CentralLine line{"robots", options.line};
   if (options.list)
     (void)line.scan();
@@ -58,12 +58,13 @@ void run(const RobotsOptions& options, int& exit_code) {
   else
     print_table(line, peers);
   for (const Peer& peer : peers) fleet::warn_of_link("robots", line.robot(peer.index));
-  if (peers.empty()) exit_code = exit_failure;
+  if (peers.empty())
+    fail({"robots: the central finds no robot", "is one switched on, and near? --scan 10s looks for longer"});
 }
 
 }  // namespace
 
-void declare_robots(Verb verb, Session&, int& exit_code) {
+void declare_robots(Verb verb, Session&, int&) {
   verb.describe("mappers behind a central: where they are, and how their links are", mapper_group,
                 "  amiroctl robots\n"
                 "  amiroctl robots --json | jq -r .robot\n"
@@ -75,7 +76,7 @@ void declare_robots(Verb verb, Session&, int& exit_code) {
   add_lasting(verb, "--listen,--watch", options->listen, "how long to listen once all are connected")
       .formerly("--watch");
   fleet::add_line_options(verb, options->line);
-  verb.callback([options, &exit_code] { run(*options, exit_code); });
+  verb.callback([options] { run(*options); });
 }
 
 }  // namespace ocm::cli

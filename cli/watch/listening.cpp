@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <chrono>
 
+#include "cli/shared/clock.hpp"
+
 namespace ocm::cli {
 
 Over listen(transport::Bus& bus, const ListenLimits& limits, const TakeEntries& take, const TakeLost& lost,
@@ -10,7 +12,7 @@ Over listen(transport::Bus& bus, const ListenLimits& limits, const TakeEntries& 
   log::Interfaces interfaces;
   const std::uint16_t interface = interfaces.number(bus.name());
   Live live{bus};
-  const auto end = limits.duration ? Clock::now() + *limits.duration : Clock::time_point::max();
+  const auto end = limits.duration ? time_after(Clock::now(), *limits.duration) : Clock::time_point::max();
   auto tick = each_second ? Clock::now() + std::chrono::seconds{1} : Clock::time_point::max();
   std::uint64_t taken = 0;
   std::uint64_t told = 0;

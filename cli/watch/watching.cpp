@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "ocm/log/playback.hpp"
+
 #include "cli/logs/opened_log.hpp"
 #include "cli/shared/buses.hpp"
 #include "cli/shared/interrupt.hpp"
@@ -81,7 +83,7 @@ std::span<const log::Entry> Watching::within(std::span<const log::Entry> entries
   if (duration_ && !entries.empty()) {
     if (!first_) first_ = entries.front().time;
     const auto beyond = std::find_if(entries.begin(), entries.end(), [this](const log::Entry& entry) {
-      return entry.time - *first_ > *duration_;
+      return log::Playback::distance(entry.time, *first_) > *duration_;
     });
     if (beyond != entries.end()) done_ = true;
     entries = entries.first(static_cast<std::size_t>(beyond - entries.begin()));

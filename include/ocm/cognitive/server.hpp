@@ -4,6 +4,7 @@
 /// O(1) a byte. Host only.
 #pragma once
 
+#include <algorithm>
 #include <deque>
 #include <optional>
 #include <string>
@@ -18,7 +19,7 @@ namespace ocm::cognitive {
 class Server {
  public:
   explicit Server(const FleetOptions& fleet = {}, const mapper::server::CentralClientOptions& client = {})
-      : client_(client), fleet_(fleet) {}
+      : client_(within(client)), fleet_(fleet) {}
 
   /// Bytes from the central. `heard(robot, kind)` after each whole sentence of a robot.
   template <class Heard>
@@ -63,6 +64,11 @@ class Server {
   [[nodiscard]] std::uint32_t unsaid() const noexcept { return unsaid_; }
 
  private:
+  /// Of more robots than it has room for the fleet would not know.
+  static mapper::server::CentralClientOptions within(mapper::server::CentralClientOptions options) {
+    options.most_robots = std::min(options.most_robots, static_cast<unsigned>(Fleet::most_robots));
+    return options;
+  }
   void take_events(base::Time now) {
     while (auto event = client_.next_event()) {
       const mapper::server::Peer* const peer = client_.peer(event->index);

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -62,11 +63,13 @@ class Envelope {
       if (!any) points.fill(point);
       any = true;
       points[last] = point;
-      if (point.y < points[lowest].y) points[lowest] = point;
-      if (point.y > points[highest].y) points[highest] = point;
-      if (point.x < points[leftmost].x) points[leftmost] = point;
-      if (point.x > points[rightmost].x) points[rightmost] = point;
+      if (is_below(point.y, points[lowest].y)) points[lowest] = point;
+      if (is_below(-point.y, -points[highest].y)) points[highest] = point;
+      if (is_below(point.x, points[leftmost].x)) points[leftmost] = point;
+      if (is_below(-point.x, -points[rightmost].x)) points[rightmost] = point;
     }
+    /// What is no number is kept until a number comes.
+    static bool is_below(double value, double kept) { return value < kept || std::isnan(kept); }
     void add(const Column& later) {
       if (!later.any) return;
       // Each by itself may be what was kept; the last one again, to be the last.

@@ -9,7 +9,7 @@ atomic: atomic memory_order_acquire memory_order_relaxed memory_order_release
 bit: bit_cast bit_ceil countl_zero countr_zero endian
 charconv: from_chars to_chars
 chrono: chrono chrono_literals nano
-cmath: abs atan2 ceil cos exp floor fmod hypot llround lround pow remainder sin sqrt
+cmath: abs atan2 ceil cos exp floor fmod hypot isnan llround lround pow remainder sin sqrt
 concepts: convertible_to destructible integral invocable predicate same_as
 cstddef: byte ptrdiff_t size_t
 cstdint: int16_t int32_t int64_t int8_t uint16_t uint32_t uint64_t uint8_t uintptr_t

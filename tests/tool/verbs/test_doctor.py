@@ -194,6 +194,17 @@ class Doctor(Case):
                 return
         self.fail(report)
 
+    def test_a_message_of_can_fd_that_comes_is_not_missing(self):
+        spec = os.path.join(self.folder, "fd.dbc")
+        with open(spec, "w", encoding="utf-8") as file:
+            file.write('BU_: A\nBO_ 1 Long: 64 A\n SG_ X : 0|8@1+ (1,0) [0|0] "" A\n\n'
+                       'BA_DEF_ BO_ "GenMsgCycleTime" INT 0 10000;\nBA_DEF_DEF_ "GenMsgCycleTime" 10;\n')
+        self.start_sim("--without", "di_wheel_drive,power_management,light_ring")
+        sender = self.start("--spec", spec, "set", "Long", "--every", "10ms")
+        self.assertIn("bus: sim", sender.stderr.readline())
+        out, _ = self.run_tool("--spec", spec, "doctor", "--listen", "500ms", "--json")
+        self.assertEqual(self.what(json.loads(out)), [])
+
     def test_ctrl_c_ends_it(self):
         self.start_sim()
         doctor = self.start("doctor", "--listen", "1h")

@@ -72,8 +72,9 @@ class Robots(Line):
 
     def test_no_robot_is_there(self):
         self.central.robots = []
-        _, err = self.tool("robots", code=1)
-        self.assertIn("finds no robot", err)
+        for words in ((), ("--list",), ("--list", "--json")):
+            _, err = self.tool("robots", *words, code=1)
+            self.assertIn("amiroctl: robots: the central finds no robot\n", err)
 
     def test_a_robot_that_cannot_be_reached_is_told_and_the_others_are_shown(self):
         self.arduino.reachable = False
@@ -86,6 +87,11 @@ class Robots(Line):
         self.central.mute = True
         _, err = self.tool("robots", code=1)
         self.assertIn("does not answer", err)
+
+
+    def test_looks_for_a_minute_at_most(self):
+        _, err = self.run_tool("robots", "--scan", "61s", code=2)
+        self.assertIn("robots: --scan 61s: a central that looks for robots says nothing to those that it has\n          write at most 60s", err)
 
 
 class Goto(Line):

@@ -220,6 +220,7 @@ class Map(Case):
 
     def test_wrong_words(self):
         for words, text in ((["a.gif"], "no kind of map"), (["a.svg", "--resolution", "0"], "no size of a cell"),
+                            (["a.svg", "--range", "0"], "0.1 to 10000"), (["a.svg", "--range", "nan"], "0.1 to 10000"),
                             (["a.svg", "--start", "AVR"], "NAME=X,Y,DEG"), (["a.svg", "--start", "AVR=1,2"], "no start"),
                             (["a.svg", "--start", "AVR=1,2,3x"], "no start"),
                             (["a.svg", "--start", "AVR=nan,2,3"], "no start"),

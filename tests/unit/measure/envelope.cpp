@@ -1,7 +1,9 @@
 #include "ocm/measure/envelope.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include <catch2/catch.hpp>
@@ -82,6 +84,19 @@ TEST_CASE("envelope: every column keeps its extremes in both directions") {
   }
   CHECK((expected == std::tuple{most_x, least_x, most_y, least_y}));
   CHECK(envelope.points().size() < all.size() / 5);
+}
+
+TEST_CASE("envelope: what is no number hides no peak") {
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  Envelope envelope;
+  for (int i = 0; i < 64 * 4096; ++i)  // each column begins with none
+    envelope.add(Time{i * 1ms}, 0, i % 64 == 0 ? none : i == 100'001 ? 5 : i == 200'001 ? -5 : 0);
+  const auto points = envelope.points();
+  const auto has = [&](double y) {
+    return std::any_of(points.begin(), points.end(), [y](const auto& point) { return point.y == y; });
+  };
+  CHECK(has(5));
+  CHECK(has(-5));
 }
 
 TEST_CASE("envelope: a pause parts the curve, jitter and one lost sample do not") {

@@ -30,6 +30,7 @@ struct CentralClientOptions {
   base::Duration connect = std::chrono::seconds{10};      ///< and a link to come or go
   base::Duration again = std::chrono::milliseconds{300};  ///< before a busy central is asked again
   unsigned most_attempts = 3;
+  unsigned most_robots = 256;  ///< indexes on its list are below; a list with others is refused
   std::size_t most_requests = 64;
 };
 
@@ -311,6 +312,10 @@ class CentralClient {
   /// As many as were found, or the list is asked for again.
   void list(base::Time now) {
     if (heard_.size() != expected_) return late(now);
+    for (const Peer& entry : heard_)
+      if (entry.index >= options_.most_robots)
+        return fail("the central lists robot " + std::to_string(entry.index) + ", and " +
+                    std::to_string(options_.most_robots) + " is the most");
     for (Peer& entry : heard_)
       for (const Peer& known : peers_)
         if (known.address == entry.address && known.index == entry.index) entry.linked = known.linked;

@@ -86,6 +86,22 @@ TEST_CASE("central client: a list that is lost is asked for again, without anoth
   CHECK(bench.client.counters().timeouts == 1);
 }
 
+TEST_CASE("central client: a list with more than there is room for is refused, and the one before stays") {
+  Bench bench;
+  bench.client = CentralClient{{.most_robots = 1}};
+  bench.central.add("AVR");
+  bench.client.scan(500ms);
+  bench.advance(2s);
+  CHECK(bench.count(Event::failed) == 0);
+  bench.central.add("Arduino");
+  bench.client.scan(500ms);
+  bench.advance(2s);
+  CHECK(bench.count(Event::failed) == 1);
+  CHECK(bench.words() == "the central lists robot 1, and 1 is the most");
+  CHECK(bench.client.peers().size() == 1);
+  CHECK(bench.client.idle());
+}
+
 TEST_CASE("central client: takes over from a program that died in data mode, or within a command") {
   for (const char* rest :
        {"conn 0\n{U,9", "swi", "start\n", "conn 0\n", "*", "start\nlis", "0123456789012345678"}) {
