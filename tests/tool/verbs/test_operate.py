@@ -269,6 +269,19 @@ class Running(Operating):
         self.assertIn("0 changes", err)
         self.assertEqual(len(os.listdir(box)), 1)
 
+    def test_rest_that_does_not_leave_is_told_and_all_is_counted(self):
+        sim = self.start_sim()
+        box = os.path.join(self.folder, "box")
+        operator = self.operate("--black-box", box)
+        waiting.until(lambda: os.listdir(box), "the black box is begun")
+        sim.send_signal(signal.SIGSTOP)
+        self.addCleanup(sim.send_signal, signal.SIGCONT)
+        _, err = self.interrupt(operator)
+        self.assertEqual(operator.returncode, 1, err)
+        self.assertIn("did not leave sim", err)
+        self.assertIn("0 changes", err)
+        self.assertEqual(os.listdir(box), [])  # it was not killed
+
     def test_its_output_is_not_read_and_it_goes_on(self):
         self.start_sim()
         reader, writer = os.pipe()
