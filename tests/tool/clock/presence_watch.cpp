@@ -117,7 +117,7 @@ TEST_CASE("presence: with --no-confirm, or a caller that says it, none is asked"
 }
 
 TEST_CASE("presence: a signal ends the wait, and the board that had not answered is named") {
-  Bench bench{{{10ms, wheels_refusal}, {20ms, light_status}}};
+  Bench bench{Frames{{20ms, light_status}}};
   bench.world.interrupt(World::start + 500ms, SIGINT);
   CHECK(bench.listens({light, motors}) / 100 == 5);
   CHECK(bench.over == Over::signal);
