@@ -10,6 +10,7 @@
 
 #include "ocm/analysis/task_response.hpp"
 
+#include "cli/output/csv_cell.hpp"
 #include "cli/shared/json.hpp"
 #include "cli/shared/messages.hpp"
 
@@ -145,12 +146,14 @@ std::string to_json(const ChainStudy& study) {
 }
 
 std::string to_csv(const ChainStudy& study) {
+  const bool bounded = study.bound.latency != analysis::unbounded;
+  const auto cell = [bounded](std::int64_t ns) { return bounded ? fmt::format("{}", ns) : std::string{}; };
   std::string text = "hop,activation,waits_ns,responds_ns,until_ns\n";
   for (std::size_t i = 0; i < study.hops.size(); ++i) {
     const auto& hop = study.hops[i];
-    text +=
-        fmt::format("{},{},{},{},{}\n", study.entries[i].name,
-                    study.entries[i].sampled ? "sampled" : "triggered", hop.waits, hop.responds, hop.until);
+    text += fmt::format("{},{},{},{},{}\n", csv_cell(study.entries[i].name),
+                        study.entries[i].sampled ? "sampled" : "triggered", cell(hop.waits),
+                        cell(hop.responds), cell(hop.until));
   }
   return text;
 }

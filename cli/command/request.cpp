@@ -49,7 +49,7 @@ void send_and_await(const protocol::Catalogue& catalogue, transport::Bus& bus, R
   std::uint64_t parts = 0, wrong = 0;  // of the topic
   bool has_values = shown == nullptr;
   const Over over =
-      Live{bus}.receive_or_leave(Live::Clock::now() + timeout, [&](const can::Received& received) {
+      Live{bus}.receive_or_leave(time_after(Live::Clock::now(), timeout), [&](const can::Received& received) {
         if (refusals.take(received)) return false;
         const auto reception = receiver.take(received);
         if (reception.topic != &topic) return true;

@@ -29,4 +29,8 @@ bool seems_paused(CentralLine& line, unsigned index) {
   return !updates && (robot.last == mapper::link::Kind::idle || robot.last == mapper::link::Kind::pong);
 }
 
+void pause_unseen(CentralLine& line, unsigned index) {
+  for (int times = 0; times < 3; ++times) line.end().pause(index);
+}
+
 }  // namespace ocm::cli::fleet

@@ -135,7 +135,8 @@ void Control::drive(ViewerId viewer, const client::Hold& hold) {
       return refuse(viewer, program_commands);
     if (behaviour_.exists()) return begin(viewer, hold);
   }
-  if (is_rest(hold.frame) && waiting_ && waiting_->viewer == viewer) waiting_.reset();
+  if (is_rest(hold.frame) && waiting_ && (waiting_->viewer == viewer || waiting_->hold.frame.id == id))
+    end_waiting(viewer);
   Driver::Frames frames;
   const std::string why = driver_.drive(viewer, hold, Clock::now(), frames);
   if (!why.empty()) refuse(viewer, why);
@@ -166,10 +167,16 @@ void Control::begin_waiting() {
   send_all(viewer, frames);
 }
 
+void Control::end_waiting(ViewerId by) {
+  if (!waiting_) return;
+  if (waiting_->viewer != by) driver_.end_early(waiting_->viewer, waiting_->hold.frame.id, Clock::now());
+  waiting_.reset();
+}
+
 void Control::command(ViewerId viewer, const client::Command& command) {
   if (command.hold) return drive(viewer, *command.hold);
   if (command.ends_hold) {  // also where another drives
-    waiting_.reset();
+    end_waiting(0);
     Driver::Frames frames;
     driver_.rest(frames);
     send_all(viewer, frames);
@@ -269,8 +276,9 @@ void Control::heard(const can::Received& received) {
   if (!is_rest(received.frame)) {
     other_ = Clock::now();
     other_heard_ = true;
-  } else if (driver_.drives()) {
-    // It stopped the robot that a viewer drives: the stop holds.
+  } else if (driver_.drives() || waiting_) {
+    // It stopped the robot that a viewer drives, or is about to: the stop holds.
+    end_waiting(0);
     Driver::Frames frames;
     driver_.rest(frames);
     send_all(0, frames);

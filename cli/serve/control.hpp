@@ -64,6 +64,8 @@ class Control {
   /// A drive is over of which nothing was looked after for too long: this program did not run, and what
   /// viewers have said waits and is old.
   void look_whether_it_ran();
+  /// The drive that waits does not begin. Unless its viewer has let go itself, it must say rest first.
+  void end_waiting(ViewerId by);
   /// Why a behaviour of a board may not begin now; empty: it may, or the command begins none.
   [[nodiscard]] std::string why_not_begun(ViewerId viewer, const client::Command& command) const;
   /// What ends each behaviour that a viewer (0: any) has commanded and that has not left.

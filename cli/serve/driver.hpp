@@ -40,6 +40,10 @@ class Driver {
   void gone(ViewerId viewer, Frames& out);
   /// Whether its drive of these motors was ended for it, and it has not said rest since.
   [[nodiscard]] bool must_rest(ViewerId viewer, std::uint32_t id) const noexcept;
+  /// A drive that was about to begin was ended by another: as one that was held.
+  void end_early(ViewerId viewer, std::uint32_t id, Clock::time_point now) {
+    ended_.push_back({viewer, id, now});
+  }
   /// All motors rest, also where another drives. Who drove must say rest first.
   void rest(Frames& out);
   /// The same where viewers were not listened to for long: what they have said meanwhile, which comes now, is

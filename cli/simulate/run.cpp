@@ -133,10 +133,6 @@ int run_amiro(const sim::AmiroOptions& options, const ShowOptions& show, Session
         {{}, [path] { return transport::VirtualBus::running(path); }}, session, is_over,
         [&](const sim::Shell& shell) { return sim::serve_amiro(bus_name.address, options, shell); });
   }
-  if (options.bus_errors > 0)
-    fail({"sim: --bus-errors with --bus " + session.bus_name,
-          "leave one out: a real bus has errors of its own"},
-         exit_usage);
   if (options.messages != nullptr)
     fail({"sim: a robot and messages with --bus " + session.bus_name,
           "both play on a virtual bus only: leave --bus out, or one of the specs"},

@@ -215,7 +215,8 @@ class Behaviour {
 
   /// Until its time is over, it has ended, or a signal comes.
   void follow() {
-    const auto end = options_->lasting ? Clock::now() + *options_->lasting : Clock::time_point::max();
+    const auto end =
+        options_->lasting ? time_after(Clock::now(), *options_->lasting) : Clock::time_point::max();
     bool told = false;
     auto heard = Clock::now();  // or asked
     while (goes_on_ && !over() && Clock::now() < end) {

@@ -126,8 +126,10 @@ void run(const CalibrateOptions& options, int& exit_code) {
   if (paused && !fleet::pause_until_seen(line, index, false))
     fail({fmt::format("calibrate: {} is paused, and does not go on", name), "amiroctl unpause says why"});
 
-  if (const auto refused = line.end().calibrate(index, options.show))
+  if (const auto refused = line.end().calibrate(index, options.show)) {
+    if (paused) fleet::pause_unseen(line, index);
     fail({fmt::format("calibrate: {}", refused->what), refused->remedy});
+  }
   const auto overtaken = [&] { return !options.show && !line.end().is_ours(index); };
   const auto over = [&] {
     const RobotNow robot = line.robot(index);
@@ -143,6 +145,7 @@ void run(const CalibrateOptions& options, int& exit_code) {
     (void)line.end().go(index, {});
     halted = line.halt({index});
   }
+  if (paused && !overtaken() && (!done || interrupted() != 0)) fleet::pause_unseen(line, index);
   if (interrupted() != 0) throw Exit{exit_code_after_interrupt(exit_failure)};
   if (!done && overtaken())
     fail({fmt::format("calibrate: another program has stopped {} or sent it: {}", name, last.by),

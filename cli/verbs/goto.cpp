@@ -174,8 +174,7 @@ void run(const GotoOptions& options, int& exit_code) {
   const bool arrived = progress != Progress::none && is_final(progress);
   if (left_to_drive) line.end().leave(index);
   const bool halted = arrived || left_to_drive || line.halt({index});
-  if (paused && !arrived)  // no time is left to see that it obeys
-    for (int times = 0; times < 3; ++times) line.end().pause(index);
+  if (paused && !arrived) fleet::pause_unseen(line, index);
   if (interrupted() != 0) throw Exit{exit_code_after_interrupt(exit_failure)};
   if (!arrived && !left_to_drive) give_up(options, name, line.robot(index), progress, times_said, halted);
   if (arrived) {

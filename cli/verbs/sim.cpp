@@ -241,6 +241,7 @@ void declare_sim(Verb verb, Session& session, int& exit_code) {
       return;
     }
     const auto rates = bit_rates(verb, *options, session, cast == Cast::both);
+    if (!simulate::on_virtual_bus(session)) refuse_bus_options(verb, session);
     options->bit_rate = rates.nominal;
     options->data_bit_rate = rates.data;
     exit_code = simulate::run_amiro(*options, *show, session);

@@ -4,6 +4,7 @@
 /// should.
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cstdlib>
 #include <initializer_list>
 #include <map>
@@ -25,12 +26,13 @@ using spec::FieldModel;
 using spec::MessageModel;
 using spec::Model;
 
-/// The nearest double, which is what a reader of the line makes of the same digits; a whole number without a
-/// point.
+/// The nearest double, which is what a reader of the line makes of the same digits; a whole number of 64 bits
+/// without a point.
 Json number(base::Decimal decimal) {
   const std::string digits = print(decimal);
-  if (digits.find_first_not_of("-0123456789") == std::string::npos)
-    return std::strtoll(digits.c_str(), nullptr, 10);
+  std::int64_t whole = 0;
+  const auto read = std::from_chars(digits.data(), digits.data() + digits.size(), whole);
+  if (read.ec == std::errc{} && read.ptr == digits.data() + digits.size()) return whole;
   return std::strtod(digits.c_str(), nullptr);
 }
 

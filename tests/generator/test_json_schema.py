@@ -64,6 +64,15 @@ class RealLines(harness.Case):
         for line in lines:
             self.assertEqual([e.message for e in schema.iter_errors(line)], [], line)
 
+    def test_a_bound_beyond_64_bits(self):
+        spec = os.path.join(self.folder, "far.dbc")
+        with open(spec, "w", encoding="utf-8") as file:
+            file.write('BU_: A\nBO_ 1 Far: 8 A\n SG_ X : 0|56@1+ (1000,0) [0|0] "" A\n')
+        out, _ = self.run_tool("--spec", spec, "decode", "-", "--from", "candump", "--json", stdin="(1.0) can0 001#FFFFFFFFFFFFFF00\n")
+        lines = self.objects(out)
+        self.assertEqual([line["fields"]["X"] for line in lines], [(2**56 - 1) * 1000])
+        self.check(self.schema("--spec", spec), lines)
+
     def test_of_simulated_messages(self):
         """Those of a car and of a truck, each alone, and beside the AMiRo's topics."""
         car, truck, fast = ROOT / "examples" / "small_car.dbc", ROOT / "examples" / "truck.dbc", os.path.join(self.folder, "fast.dbc")

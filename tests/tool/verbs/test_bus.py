@@ -348,8 +348,9 @@ class OnTheBus(Case):
         self.assertGreater(int(told[2]), 0)
 
     def test_a_real_bus_has_errors_of_its_own(self):
-        _, err = self.run_tool("sim", "--bus", "can0", "--bus-errors", "1", code=2)
-        self.assertIn("--bus-errors", err)
+        for option, value in (("--bus-errors", "1"), ("--speed", "10"), ("--bitrate", "500k"), ("--data-bitrate", "2M")):
+            _, err = self.run_tool("sim", "--bus", "can0", option, value, code=2)
+            self.assertIn(f"sim: {option} with --bus can0\n          leave one out: it is for the virtual bus\n", err)
 
 
 class Library(Case):

@@ -86,6 +86,17 @@ class Played(Case):
         self.assertEqual(self.calibrate(), (GOOD, ""))
         self.assertTrue(self.avr.paused)
 
+    def test_a_paused_robot_is_paused_again_however_it_ends(self):
+        self.run_tool("pause", "AVR", "--scan", "200ms")
+        self.avr.turn_s = 1000
+        self.calibrate("--timeout", "1s", code=1)
+        waiting.until(lambda: self.avr.paused, "it is paused again behind the time-out")
+        tool = self.start("calibrate", "AVR", "--scan", "200ms")
+        waiting.until(lambda: self.avr.turning_until is not None, "the turn")
+        self.assertFalse(self.avr.paused)
+        self.interrupt(tool)
+        waiting.until(lambda: self.avr.paused, "it is paused again behind Ctrl-C")
+
     def test_one_that_does_not_come_to_an_end_is_stopped(self):
         self.avr.turn_s = 1000
         out, err = self.calibrate("--timeout", "2s", code=1)
