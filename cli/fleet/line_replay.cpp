@@ -73,7 +73,7 @@ void LineReplay::take(const Said& said) {
 Peer& LineReplay::peer(unsigned index, std::string_view name) {
   Peer& peer = state_.peers[index];
   if (peer.name == name) return peer;
-  peer = {index, {}, std::string{name}, false};
+  peer = {index, {}, std::string{name}};
   const auto start = std::find_if(known_.starts.begin(), known_.starts.end(),
                                   [&](const Start& each) { return each.name == name; });
   state_.placed[index] = start != known_.starts.end() || alone_;

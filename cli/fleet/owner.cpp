@@ -133,9 +133,9 @@ void Owner::gone(const LineCaller& caller) {
 
 RobotNow Owner::robot(unsigned index) const {
   const mapper::server::Peer* const peer = server_->client().peer(index);
-  RobotNow now = robot_now(
-      server_->fleet(),
-      peer != nullptr ? *peer : mapper::server::Peer{index, "", fmt::format("robot {}", index), false});
+  RobotNow now =
+      robot_now(server_->fleet(),
+                peer != nullptr ? *peer : mapper::server::Peer{index, "", fmt::format("robot {}", index)});
   now.order = orders_[index].number;
   now.by = orders_[index].by;
   now.held = explores_ && held(index);

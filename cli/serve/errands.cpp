@@ -78,7 +78,7 @@ void Errands::take(LineEnd& line, ViewerId viewer, const FleetOrder& order, bool
       return;
     case Kind::call_back:
       errand.target = cognitive::place(robot.origin);
-      return go(line, robot, errand, owner_explores, now);
+      return go(line, robot, errand, owner_explores);
     case Kind::go:
       errand.target = order.place;
       if (!robot.origin_known)
@@ -87,11 +87,11 @@ void Errands::take(LineEnd& line, ViewerId viewer, const FleetOrder& order, bool
                 fmt::format("where {} was switched on is not known, so it is not on the map: start serve "
                             "with --start {}=X,Y,DEG",
                             robot.name, robot.name)));
-      return go(line, robot, errand, owner_explores, now);
+      return go(line, robot, errand, owner_explores);
   }
 }
 
-void Errands::go(LineEnd& line, const RobotNow& robot, Errand errand, bool owner_explores, base::Time now) {
+void Errands::go(LineEnd& line, const RobotNow& robot, Errand errand, bool owner_explores) {
   if (!robot.linked || robot.lost)
     return void(end(errand, Level::error, fmt::format("{} has no link, or says nothing", robot.name)));
   if (!robot.update)
@@ -102,14 +102,14 @@ void Errands::go(LineEnd& line, const RobotNow& robot, Errand errand, bool owner
     return void(
         end(errand, Level::error, fmt::format("{} is driven by {}; stop it first", robot.name, robot.by)));
   if (robot.located && !robot.busy()) {
-    if (!send(line, errand, robot, now)) errands_.insert_or_assign(robot.index, errand);
+    if (!send(line, errand, robot)) errands_.insert_or_assign(robot.index, errand);
     return;
   }
   if (const auto refused = line.go(robot.index, {})) return void(end(errand, Level::error, refused->what));
   errands_.insert_or_assign(robot.index, errand);
 }
 
-bool Errands::send(LineEnd& line, Errand& errand, const RobotNow& robot, base::Time now) {
+bool Errands::send(LineEnd& line, Errand& errand, const RobotNow& robot) {
   if (way_m(robot, *errand.target) < near_m)
     return end(errand, Level::info, fmt::format("{} is there", robot.name));
   if (++errand.pieces > most_pieces)
@@ -118,7 +118,6 @@ bool Errands::send(LineEnd& line, Errand& errand, const RobotNow& robot, base::T
   if (refused) return end(errand, Level::error, fmt::format("{}; {}", refused->what, refused->remedy));
   senders_[robot.index] = errand.viewer;
   errand.phase = Phase::sent;
-  errand.since = now;
   return false;
 }
 
@@ -128,7 +127,7 @@ bool Errands::drive(LineEnd& line, Errand& errand, const RobotNow& robot, base::
   if (!line.is_ours(robot.index))
     return end(errand, Level::warning, fmt::format("{} was stopped or sent by {}", robot.name, robot.by));
   if (errand.phase != Phase::sent) {
-    if (robot.located && is_final(robot.progress)) return send(line, errand, robot, now);
+    if (robot.located && is_final(robot.progress)) return send(line, errand, robot);
     if (now - errand.since < (errand.phase == Phase::stopping ? to_stop : to_say_it)) return false;
     return end(errand, Level::error,
                fmt::format("nothing shows that {} stands, so it was not sent", robot.name));

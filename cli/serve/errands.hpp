@@ -62,18 +62,17 @@ class Errands {
     std::optional<fleet::Pausing> pausing{};
     bool pauses = false;
     Phase phase = Phase::stopping;
-    base::Time since{};  ///< of its phase
+    base::Time since{};  ///< of its phase, where that has an end: not of `sent`
     unsigned pieces = 0;
   };
 
   [[nodiscard]] std::optional<unsigned> find(const fleet::LineEnd& line, ViewerId viewer,
                                              const std::string& name) const;
-  void go(fleet::LineEnd& line, const fleet::RobotNow& robot, Errand errand, bool owner_explores,
-          base::Time now);
+  void go(fleet::LineEnd& line, const fleet::RobotNow& robot, Errand errand, bool owner_explores);
   /// True: it is over.
   [[nodiscard]] bool drive(fleet::LineEnd& line, Errand& errand, const fleet::RobotNow& robot,
                            base::Time now);
-  [[nodiscard]] bool send(fleet::LineEnd& line, Errand& errand, const fleet::RobotNow& robot, base::Time now);
+  [[nodiscard]] bool send(fleet::LineEnd& line, Errand& errand, const fleet::RobotNow& robot);
   [[nodiscard]] bool pause(fleet::LineEnd& line, Errand& errand, const fleet::RobotNow& robot,
                            base::Time now);
   bool end(const Errand& errand, foxglove::Level level, const std::string& words) const;
