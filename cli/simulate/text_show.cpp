@@ -8,6 +8,7 @@
 #include "cli/shared/messages.hpp"
 #include "cli/simulate/room_view.hpp"
 #include "cli/top/curses.hpp"
+#include "cli/top/message_line.hpp"
 
 namespace ocm::cli::simulate {
 namespace {
@@ -17,8 +18,6 @@ using top::Key;
 
 constexpr base::Duration usual_interval = 100ms;
 constexpr base::Duration shortest_interval = 50ms;
-/// How long a message is in the last line.
-constexpr base::Duration message_time = 5s;
 
 }  // namespace
 
@@ -32,8 +31,7 @@ struct TextShow::State {
   std::size_t chosen = 0;
   std::size_t robots = 1;
   Clock::time_point drawn{};
-  std::size_t messages = 0;
-  Clock::time_point message_until{};
+  top::MessageLine message;
 
   void press(const Key& key) {
     const bool is_letter = key.kind == Key::Kind::character;
@@ -81,12 +79,8 @@ void TextShow::watch(const std::function<sim::SeenWorld()>& look) {
   const sim::SeenWorld world = look();
   state.robots = std::max<std::size_t>(world.robots.size(), 1);
   state.trails.take(world);
-  if (HeldMessages::count() != state.messages) {
-    state.messages = HeldMessages::count();
-    state.message_until = now + message_time;
-  }
   RoomScene scene{state.options.speed, state.options.bus, state.chosen, state.beams};
-  if (now < state.message_until) scene.message = HeldMessages::newest();
+  if (state.message.shows(HeldMessages::count(), now)) scene.message = HeldMessages::newest();
   state.screen->draw(draw_room(world, state.trails, scene, state.screen->size(), state.screen->unicode()));
 }
 
