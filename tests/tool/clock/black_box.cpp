@@ -109,4 +109,63 @@ TEST_CASE("black box: by a clock that is behind, the files of runs before are th
   std::filesystem::remove_all(folder);
 }
 
+/// A black box in a folder that goes with it.
+struct Boxed {
+  std::string folder = std::filesystem::temp_directory_path() /
+                       ("ocm-black-box-" + std::to_string(World::now_running().random()));
+  operate::BlackBox box{{folder, 10s, 20}, "test", "can0", amiro::catalogue};
+  Boxed() = default;
+  ~Boxed() { std::filesystem::remove_all(folder); }
+  Boxed(const Boxed&) = delete;
+  Boxed& operator=(const Boxed&) = delete;
+};
+constexpr base::Time wall{1'000'000'000s};
+log::Entry at(Duration after) {
+  return {wall + after, can::Frame{0x608, 1, {}}};
+}
+
+TEST_CASE("black box: each of its times is the last, or the first, of its kind") {
+  const World world{1};
+  constexpr Duration settling = operate::BlackBox::settling;
+  {
+    Boxed boxed;  // so late it still finds its place, and later not
+    for (const Duration after : {0ns, Duration{-settling}}) boxed.box.add(at(after), World::start);
+    const auto found = boxed.box.take(World::start, wall).entries;
+    REQUIRE(found.size() == 2);
+    CHECK(found[0].time == wall - settling);
+    for (const Duration after : {0ns, Duration{-settling - 1ns}}) boxed.box.add(at(after), World::start);
+    const auto left = boxed.box.take(World::start, wall).entries;
+    REQUIRE(left.size() == 2);
+    CHECK(left[0].time == wall);
+  }
+  {
+    Boxed boxed;
+    boxed.box.add(at(0ns), World::start);
+    CHECK(boxed.box.take_fresh(wall).empty());
+    CHECK(boxed.box.take_fresh(wall + settling).empty());
+    CHECK(boxed.box.take_fresh(wall + settling + 1ns).size() == 1);
+    boxed.box.add(at(0ns), World::start);
+    CHECK(boxed.box.take_fresh(wall - 1ns).size() == 1);  // of a clock that was set back
+  }
+  {
+    Boxed boxed;
+    boxed.box.add(at(0ns), World::start);
+    CHECK(boxed.box.take(World::start + 10s, wall).entries.size() == 1);
+    boxed.box.add(at(0ns), World::start);
+    CHECK(boxed.box.take(World::start + 10s + 1ns, wall).entries.empty());
+  }
+}
+
+TEST_CASE("black box: of more frames than it has room for the oldest go, and are counted") {
+  const World world{1};
+  Boxed boxed;
+  constexpr std::size_t most = operate::BlackBox::most_entries;
+  for (std::size_t i = 0; i < most + 3; ++i)
+    boxed.box.add(at(Duration{static_cast<std::int64_t>(i)}), World::start);
+  CHECK(boxed.box.dropped() == 3);
+  const auto kept = boxed.box.take(World::start, wall).entries;
+  CHECK(kept.size() == most);
+  CHECK(kept.front().time == wall + 3ns);
+}
+
 }  // namespace tool_clock_black_box_test

@@ -351,6 +351,58 @@ class Run {
   Moment ended_{};
 };
 
+/// What a run of a second prints in which an obstacle is seen just behind a step of the wall clock.
+std::string printed_behind_a_step(Duration by) {
+  World world{1};
+  const Moment seen = World::start + 570ms;
+  world.set_wall_clock(seen - 1us, by);
+  world.interrupt(World::start + 1s, SIGINT);
+  std::mutex mutex;
+  std::string printed;
+  world.disk = [&](int, std::string_view text) {
+    const std::lock_guard lock{mutex};
+    printed += text;
+    return cli::Written{};
+  };
+  PlayedBus::Conditions conditions;
+  // All frames of a sample at once: the wait before them is what its age could be.
+  const auto sample = [&conditions](Moment at, std::int64_t value) {
+    for (const auto& layout : ring().frames) {
+      can::Frame frame{
+          protocol::Identifier{protocol::Direction::sensor, protocol::Priority::high, layout.id}.encode(),
+          layout.dlc(),
+          {}};
+      for (const auto& field : layout.fields) protocol::put(frame.data, field.position, value);
+      conditions.incoming.push_back({at, frame});
+    }
+  };
+  for (Duration at = 20ms; at < 570ms; at += 50ms) sample(World::start + at, 0);
+  sample(seen, 60'000);
+  const auto loaded = operate::parse(file_text, "clock.operator.json", amiro::catalogue, 1'000'000);
+  REQUIRE(loaded.file);
+  PlayedBus bus{world, conditions, "clock-step-" + std::to_string(::getpid())};
+  const auto control = operate::Control::open(bus.name());
+  REQUIRE(control);
+  world.inputs[(*control)->descriptor()] = [] { return Moment::max(); };
+  const operate::RunOptions options{.json = false, .bit_rate = 1'000'000, .black_box = {}};
+  {
+    operate::Runner runner{bus, **control, amiro::catalogue, *loaded.file, options};
+    CHECK(runner.run() == cli::Over::signal);
+    runner.rest();
+    runner.sum_up();
+  }
+  const std::lock_guard lock{mutex};
+  return printed;
+}
+
+TEST_CASE("operate: a wall clock that is corrected by less than 5 ms makes no sample older than it is") {
+  const Silence silence;
+  for (const Duration by : {2ms, -2ms})
+    CHECK(printed_behind_a_step(by).find("a step took") == std::string::npos);
+  for (const Duration by : {8ms, -8ms})
+    CHECK(printed_behind_a_step(by).find("a step took") != std::string::npos);
+}
+
 TEST_CASE("operate: whatever happens, it does not drive by what is out of date, and ends at rest") {
   const auto runs = static_cast<std::uint64_t>(explored(1000));
   const Silence silence;

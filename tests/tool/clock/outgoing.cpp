@@ -1,6 +1,8 @@
 // What a verb says of frames that do not leave, and how long it waits for them.
 #include "cli/shared/outgoing.hpp"
 
+#include <fmt/format.h>
+
 #include "ocm/can/text.hpp"
 
 #include "cli/shared/messages.hpp"
@@ -117,6 +119,9 @@ TEST_CASE("outgoing: how many frames did not leave, after half a second in which
   CHECK(some.text == std::string{"amiroctl: led: 2 of 3 frames did not leave can0, and may leave later\n"} +
                          none_acknowledges);
   CHECK(some.after >= 500ms);
+  CHECK(waits(3, 2500us).text ==
+        std::string{"amiroctl: led: 1 of 3 frames did not leave can0, and may leave later\n"} +
+            none_acknowledges);
 }
 
 TEST_CASE("outgoing: a slow bus is waited for as long as frames leave, and one that cannot tell is not") {
@@ -177,6 +182,37 @@ TEST_CASE("outgoing: what it means that frames do not leave is said once somethi
   Outgoing stop{new_one, "stop"};
   stop.otherwise("it moves");  // whether or not something has left
   CHECK(stop.matters());
+}
+
+TEST_CASE("outgoing: on a bus that went down behind the last frame, one may not have left") {
+  World world{1};
+  PlayedBus::Conditions conditions;
+  conditions.frame_time = 1ms;
+  conditions.down = {{World::start + 20ms, never}};
+  PlayedBus bus{world, std::move(conditions)};
+  Outgoing outgoing{bus, "led"};
+  for (int i = 0; i < 2; ++i) outgoing.send(frame("23C#010203"));
+  world.pass(50ms);
+  CHECK(left(world, [&] { outgoing.expect_all_left(); }).text ==
+        "amiroctl: led: 1 of 2 frames did not leave can0, and may leave later: can0 is down\n          bring "
+        "it up\n");
+}
+
+TEST_CASE("outgoing: of what two frames mean that which no watchdog ends is said") {
+  World world{1};
+  PlayedBus::Conditions conditions;
+  conditions.gone = World::start + 1s;
+  PlayedBus bus{world, std::move(conditions)};
+  Outgoing outgoing{bus, "run"};
+  outgoing.otherwise_after_the_next("it moves");
+  outgoing.send(frame("201#0100000000000000"));
+  world.pass(10ms);
+  outgoing.otherwise_after_the_next("something else");
+  const auto meant = [&] { return left(world, [&] { outgoing.send(frame("201#0000000000000000")); }).text; };
+  outgoing.otherwise_after_the_next(cli::still_travelling);
+  outgoing.otherwise_after_the_next("it moves");
+  world.pass(1s);
+  CHECK(meant() == fmt::format("amiroctl: can0 is gone; {}\n          plug it in\n", cli::still_travelling));
 }
 
 }  // namespace tool_clock_outgoing_test

@@ -234,6 +234,9 @@ TEST_CASE("drive by gamepad: where a stick is") {
   CHECK(deflection(500, {0, 255}) == 1);             // beyond what the device says
   CHECK(deflection(7, {0, 0}) == 0);
   CHECK_FALSE(std::signbit(deflection(-1, {-100, 100})));
+  const double hardly = deflection(-11, {-100, 100});  // beyond the middle, and no step from it
+  CHECK(hardly == 0);
+  CHECK_FALSE(std::signbit(hardly));
 }
 
 }  // namespace tool_clock_pad_drive_test

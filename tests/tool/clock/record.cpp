@@ -388,4 +388,76 @@ TEST_CASE("recorder: whatever happens to program, clock, buses and disk, no fram
   }
 }
 
+/// Frames at their times, and how late each was fetched at most.
+class Fetched final : public record::Capture {
+ public:
+  Fetched(World& world, bool keeps_times) : world_(&world), keeps_times_(keeps_times) {
+    for (int i = 0; i < 10; ++i) arrivals_.push_back(World::start + 15ms + i * 10ms);
+    world.inputs[descriptor()] = [this] {
+      return next_ < arrivals_.size() ? arrivals_[next_] : Moment::max();
+    };
+  }
+  std::size_t read(std::span<log::Entry> into, std::uint16_t interface) override {
+    std::size_t count = 0;
+    for (; count < into.size() && next_ < arrivals_.size() && arrivals_[next_] <= world_->now(); ++next_) {
+      latest = std::max(latest, world_->now() - arrivals_[next_]);
+      into[count++] = {world_->wall_at(arrivals_[next_]), can::Frame{0x601, 4, {}}, interface};
+    }
+    return count;
+  }
+  std::string_view name() const override { return "can0"; }
+  int descriptor() const override { return 1000; }
+  BusState state() const override { return BusState::up; }
+  const transport::Failure& failure() const override { return failure_; }
+  std::uint64_t lost() const override { return 0; }
+  std::uint32_t bit_rate() const override { return 0; }
+  bool keeps_times() const override { return keeps_times_; }
+  bool may_return() const override { return false; }
+
+  Duration latest{};
+
+ private:
+  World* world_;
+  bool keeps_times_;
+  std::vector<Moment> arrivals_;
+  std::size_t next_ = 0;
+  transport::Failure failure_;
+};
+
+TEST_CASE(
+    "recorder: frames come in bunches where they have their times already, and no reader waits for each") {
+  const Silence silence;
+  const Folder folder;
+  const auto latest = [&](bool keeps_times, bool live) {
+    folder.empty();
+    World world{1};
+    record::FilesOptions options;
+    options.format = cli::logs::find_format("candump-ns");
+    options.path = folder / ("run" + std::string{options.format->ending});
+    options.sync = false;
+    record::Files files{options, amiro::catalogue};
+    REQUIRE(files.open().ok());
+    std::vector<record::Port> ports(1);
+    ports[0].name = "can0";
+    auto capture = std::make_unique<Fetched>(world, keeps_times);
+    const auto& fetched = *capture;
+    ports[0].capture = std::move(capture);
+    record::Limits limits;
+    limits.duration = 200ms;
+    const auto reopen = [](std::string_view) -> transport::Outcome<std::unique_ptr<record::Capture>> {
+      return transport::Failure{"away", ""};
+    };
+    record::Recorder recorder{std::move(ports), reopen, files, limits, live};
+    recorder.receive();
+    while (recorder.writing().step(0ms)) world.pass(1ms);
+    CHECK(recorder.received() == 10);
+    return fetched.latest;
+  };
+  CHECK(latest(true, false) >= 4ms);
+  CHECK(latest(true, false) < 10ms);
+  CHECK(latest(false, false) < 1ms);
+  CHECK(latest(true, true) < 1ms);
+  CHECK(latest(false, true) < 1ms);
+}
+
 }  // namespace tool_clock_record_test

@@ -4,7 +4,9 @@
 #include <array>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include "ocm/topics/amiro.hpp"
 
@@ -52,6 +54,33 @@ TEST_CASE(
   spool.end();
   CHECK(std::filesystem::is_empty(folder));
   std::filesystem::remove_all(folder);
+}
+
+TEST_CASE(
+    "spool: what a run that was killed has left becomes one file, in the order in which it was written") {
+  World world{1};
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / ("ocm-spool-" + std::to_string(world.random()));
+  const auto now = std::filesystem::file_time_type::clock::now();
+  for (const auto& second : {now, now - 1s, now + 1s}) {
+    std::filesystem::create_directories(folder);
+    const auto put = [&](const char* name, const char* text, auto time) {
+      std::ofstream{folder / name} << text;
+      std::filesystem::last_write_time(folder / name, time);
+    };
+    put("test.running-0.log", "zero\n", now);
+    put("test.running-1.log", "one\n", second);
+    operate::Spool spool{folder.string(), "test", 10s, amiro::catalogue};
+    const auto left = spool.recover((folder / "killed.log").string(), (folder / "killed-2.log").string());
+    REQUIRE(left);
+    CHECK(left->files == std::vector<std::string>{(folder / "killed.log").string()});
+    std::ostringstream text;
+    text << std::ifstream{folder / "killed.log"}.rdbuf();
+    CHECK(text.str() == (second < now ? "one\nzero\n" : "zero\none\n"));
+    CHECK_FALSE(std::filesystem::exists(folder / "test.running-0.log"));
+    CHECK_FALSE(std::filesystem::exists(folder / "test.running-1.log"));
+    std::filesystem::remove_all(folder);
+  }
 }
 
 }  // namespace tool_clock_spool_test
