@@ -189,4 +189,63 @@ TEST_CASE("line replay: pieces that end anywhere, noise, and nothing at all") {
   CHECK(nothing.robots().empty());
 }
 
+TEST_CASE(
+    "line replay: a robot that stands beside its beginning, or is silent for two of its words, stands") {
+  const auto state = [](const Log& log) {
+    LineReplay replay{log.read, known()};
+    replay.go_to(1h);
+    return std::string{cli::fleet::state_of(replay.robots()[0])};
+  };
+  Log log;
+  log.robot(0, handshake);
+  log.robot(0, update(0, 40, 0));
+  log.robot(0, "{S,IDL}\n");
+  log.robot(0, update(0, 40, 0));
+  CHECK(state(log) == "idle");
+  for (int i = 0; i < 11; ++i) log.robot(0, update(0, 40, 0));  // the last one 2.4 s behind what it said
+  CHECK(state(log) == "idle");
+  log.robot(0, update(0, 40, 0));
+  CHECK(state(log) == "moving");
+}
+
+TEST_CASE("line replay: half-way to its beginning it goes on; what was before it began again is forgotten") {
+  Log half;
+  half.robot(0, handshake);
+  half.robot(0, update(0, 0, 0));
+  half.robot(0, update(10, 0, 0));
+  half.robot(0, handshake);
+  half.robot(0, update(5, 0, 0));
+  LineReplay first{half.read, known()};
+  first.go_to(1h);
+  CHECK(first.robots()[0].pose().x_m == Approx(1.05F));
+
+  Log again;
+  again.robot(0, handshake);
+  again.robot(0, update(0, 0, 0));
+  again.robot(0, update(34, 0, 0));
+  again.robot(0, handshake);  // switched off and on, where it stood
+  for (const int x : {0, 20, 34}) again.robot(0, update(x, 0, 0));
+  LineReplay second{again.read, known()};
+  second.go_to(1h);
+  CHECK(second.robots()[0].pose().x_m == Approx(1.68F));
+}
+
+TEST_CASE("line replay: a robot has a number below 128") {
+  Log log;
+  log.says("found 1\n128:C0000000000A:A\nend of list\nconnecting 128\nconnected 128\n");
+  for (const std::string& text : {handshake, update(5, 6, 7), std::string{"{S,IDL}\n"}}) {
+    log.at += 200ms;
+    log.says("[128]:A:" + text);
+  }
+  log.says("lost 128\n");
+  LineReplay none{log.read, {}};
+  none.go_to(1h);
+  CHECK(none.robots().empty());
+  log.says("[127]:B:" + update(5, 6, 7));
+  LineReplay last{log.read, {}};
+  last.go_to(1h);
+  REQUIRE(last.robots().size() == 1);
+  CHECK(last.robots()[0].index == 127);
+}
+
 }  // namespace fleet_line_replay_test

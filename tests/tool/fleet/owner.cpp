@@ -9,6 +9,7 @@
 #include <regex>
 #include <string>
 #include <unistd.h>
+#include <utility>
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
@@ -287,6 +288,62 @@ TEST_CASE("owner: alone it serves no other program, and knows its robots") {
   CHECK(owner.descriptor() == -1);
   CHECK(owner.turned_away() == 0);
   CHECK_FALSE(*owner.renew());
+}
+
+TEST_CASE("owner: a robot that its program has left may be sent by any other, while it drives") {
+  Bench bench;
+  bench.central.add("AVR");
+  static_cast<void>(bench.ask("goto", "scan 300"));
+  bench.pass(1s);
+  static_cast<void>(bench.ask("goto", "connect 0"));
+  bench.pass(8s);
+  CHECK(bench.ask("goto", "go 0 0 100") == "ok\n1");
+  CHECK(bench.ask("other", "go 0 0 10").starts_with("no\nAVR is driven by goto"));
+  CHECK(bench.ask("goto", "leave 0") == "ok\n");
+  CHECK(bench.ask("other", "go 0 0 10") == "ok\n2");
+  CHECK(bench.owner->go(0, {0, 10}, bench.now));  // that one drives it now: refused
+}
+
+TEST_CASE("owner: who joined is at work for two seconds behind its last word") {
+  Bench bench;
+  static_cast<void>(bench.ask("goto", "robots"));
+  CHECK(bench.owner->at_work(bench.now + 2s).size() == 1);
+  CHECK(bench.owner->at_work(bench.now + 2s + 1ns).empty());
+}
+
+/// A radio on which 130 robots are seen.
+struct Crowd {
+  void say(std::string_view text) { said += text; }
+  void start_scan() {}
+  void stop_scan() {}
+  void connect(const mapper::link::Address&) {}
+  void disconnect(const mapper::link::Address&) {}
+  void restart() {}
+  std::string said;
+};
+
+TEST_CASE("owner: of a central that lists more robots than a program knows it tells the first 128") {
+  Bench bench;
+  Crowd radio;
+  const auto central = std::make_unique<mapper::link::Central<130, 1, 8>>();
+  static_cast<void>(bench.ask("robots", "scan 300"));
+  for (int i = 0; i < 200; ++i) {
+    bench.now += 10ms;
+    for (int robot = 0; central->scanning() && robot < 130; ++robot)
+      central->found({0xC0, 0, 0, 0, 0, static_cast<std::uint8_t>(robot)}, fmt::format("R{}", robot), radio);
+    bench.server.expire(bench.now);
+    for (const char c : bench.server.take()) central->feed(c, radio);
+    bench.server.feed(std::exchange(radio.said, {}), bench.now);
+    while (bench.server.next_event()) {
+    }
+    bench.owner->serve(bench.now);
+  }
+  REQUIRE(bench.server.client().peers().size() == 130);
+  const std::string rows = bench.ask("robots", "robots 126");
+  CHECK(rows.find("index=125\t") == std::string::npos);
+  CHECK(rows.find("index=126\t") != std::string::npos);
+  CHECK(rows.find("index=127\t") != std::string::npos);
+  CHECK(rows.find("index=128\t") == std::string::npos);
 }
 
 }  // namespace fleet_owner_test

@@ -214,4 +214,17 @@ TEST_CASE("robot now: its state in a word") {
   CHECK(state_of(robot) == "silent");
 }
 
+TEST_CASE("robot now: pieces are torn sentences, and what is left over of others") {
+  cognitive::Fleet fleet;
+  const base::Time now{1s};
+  fleet.linked(0, "A", now);
+  fleet.feed("[0]:A:{U,1,2}\n[0]:A:3,4,5}\n", now);
+  const RobotNow robot = cli::fleet::robot_now(fleet, {0, "C0", "A", true});
+  const auto& text = fleet.ear(0).text();
+  CHECK(text.faults().total() > 0);
+  CHECK(text.stray() > 0);
+  CHECK(robot.torn == text.faults().total());
+  CHECK(robot.pieces == text.faults().total() + text.stray());
+}
+
 }  // namespace fleet_robot_now_test

@@ -100,6 +100,17 @@ struct Bench {
     board->work(now);
     return takes();
   }
+  /// The robot does not read, until no more finds room: a pseudo terminal takes some thousand bytes, and more
+  /// when the kernel has moved those to its other end, which it does when it has time.
+  void flood() {
+    std::string much;
+    for (int i = 0; i < 3000; ++i) much += "{U,90,50}\n";
+    for (int looks = 0; looks < 20; ++looks) {
+      static_cast<void>(after(1ms, much));
+      if (!board->busy()) looks = 0;
+      ::usleep(1000);
+    }
+  }
   std::string summary() {
     Captured err{STDERR_FILENO};
     board->print_summary();
@@ -150,15 +161,7 @@ TEST_CASE("switchboard: a line that is closed sends what it has, for 300 ms at m
   CHECK(bench.after(1ms, "start\nconn 0\n") == "scanning\nconnecting 0\nconnected 0\n");
   CHECK(bench.after(1ms, "*drop 0\n") == "command\nclosing 0\nclosed 0\n");
   CHECK(bench.after(1ms, "start\nconn 0\n") == "scanning\nconnecting 0\nconnected 0\n");
-  // The robot does not read: a pseudo terminal takes some thousand bytes, and more when the kernel has moved
-  // those to its other end, which it does when it has time.
-  std::string much;
-  for (int i = 0; i < 3000; ++i) much += "{U,90,50}\n";
-  for (int looks = 0; looks < 20; ++looks) {
-    static_cast<void>(bench.after(1ms, much));
-    if (!bench.board->busy()) looks = 0;
-    ::usleep(1000);
-  }
+  bench.flood();
   CHECK(bench.board->busy());
   std::vector<pollfd> inputs;
   bench.board->watch(inputs);
@@ -232,6 +235,39 @@ TEST_CASE("switchboard: each word that is refused is counted") {
   Bench bench;
   static_cast<void>(bench.after(1ms, "conn 0\nhello\nswitch 0\n"));
   CHECK(bench.summary().ends_with("server  3 commands refused\n"));
+}
+
+TEST_CASE("switchboard: a packet is kept where it finds room behind a prefix of any number") {
+  for (const std::string line : {"{S,IDL}\n", "{S,A}\n"}) {  // of the second the last one just fits
+    CAPTURE(line);
+    Bench bench;
+    static_cast<void>(bench.after(1ms, "start\nconn 0\n"));
+    const std::size_t shown = line.size() + std::string_view{"[0]:AVR:"}.size();
+    const std::size_t needed = line.size() + std::string_view{"[255]:AVR:"}.size();
+    for (std::size_t said = 0; said < 2 * Switchboard::max_output / shown; said += 100) {
+      for (int i = 0; i < 100; ++i) bench.first.says(line);
+      bench.now += 1ms;
+      bench.board->work(bench.now);
+    }
+    CHECK(bench.board->output().size() == ((Switchboard::max_output - needed) / shown + 1) * shown);
+  }
+}
+
+TEST_CASE("switchboard: a line that is unplugged while it is closed is closed once") {
+  Bench bench;
+  CHECK(bench.after(1ms, "start\nconn 0\n") == "scanning\nconnecting 0\nconnected 0\n");
+  bench.flood();
+  CHECK(bench.after(1ms, "*drop 0\n") == "command\nclosing 0\n");
+  bench.first.unplug();
+  std::string closed, said;
+  {
+    Captured err{STDERR_FILENO};
+    closed = bench.after(1ms) + bench.after(1ms);
+    said = err.text();
+  }
+  CHECK(said.starts_with("AVR: '"));
+  CHECK(closed == "closed 0\n");
+  CHECK(bench.summary().find("stray") == std::string::npos);
 }
 
 }  // namespace fleet_switchboard_test

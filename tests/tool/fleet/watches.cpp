@@ -356,4 +356,24 @@ TEST_CASE("halt: what may drive is stopped and waited for, whatever else stands 
   CHECK(exchanged == 5);
 }
 
+TEST_CASE(
+    "pausing: neither an update nor what was said before it counts as a word of a robot that is paused") {
+  PlayedLine line;
+  auto& robot = standing(line);
+  const base::Time begin{10s};
+  Pausing pausing{robot, true, begin};
+  const auto step = [&](base::Duration after) { return pausing.step(line, begin + after); };
+  for (const base::Duration word : {100ms, 200ms}) {
+    robot.heard = begin + word;
+    CHECK(step(word) == Pausing::Seen::not_yet);
+  }
+  robot.updated = robot.heard = begin + 600ms;  // it has not heard it
+  CHECK(step(600ms) == Pausing::Seen::not_yet);
+  robot.heard = begin + 800ms;
+  CHECK(step(800ms) == Pausing::Seen::not_yet);
+  CHECK(step(600ms + 1500ms) == Pausing::Seen::not_yet);  // one word
+  robot.heard = begin + 2200ms;
+  CHECK(step(2200ms) == Pausing::Seen::obeys);
+}
+
 }  // namespace fleet_watches_test

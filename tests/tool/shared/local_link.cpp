@@ -7,8 +7,6 @@
 #include <memory>
 #include <string>
 #include <sys/socket.h>
-#include <sys/un.h>
-#include <thread>
 #include <unistd.h>
 #include <utility>
 #include <vector>
@@ -18,6 +16,7 @@
 
 #include "cli/shared/local_server.hpp"
 #include "tests/tool/local_client.hpp"
+#include "tests/tool/played_server.hpp"
 
 namespace tool_shared_local_link_test {
 
@@ -28,6 +27,7 @@ using cli::LocalCaller;
 using cli::LocalLink;
 using cli::LocalServer;
 using test::LocalClient;
+using test::PlayedServer;
 
 constexpr host::LocalService service{"a thing", "a server of it", host::Cause::other, false};
 constexpr std::string_view remedy = "was it stopped (Ctrl-Z; `fg` lets it go on), or has it ended?";
@@ -48,52 +48,6 @@ class Folder {
       std::filesystem::temp_directory_path() / fmt::format("ocm-local-link-{}", ::getpid());
 };
 
-/// A server that is played: answers each request in turn as its list says; "" is silence, and at the end of
-/// the list it closes. With an empty list it takes none. What it heard is known once it has ended.
-class Played {
- public:
-  Played(const std::string& path, std::vector<std::string> answers)
-      : listener_(::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0)) {
-    sockaddr_un address{};
-    address.sun_family = AF_UNIX;
-    std::copy(path.begin(), path.end(), std::begin(address.sun_path));
-    REQUIRE(::bind(listener_.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0);
-    REQUIRE(::listen(listener_.get(), 1) == 0);
-    if (!answers.empty()) plays_ = std::thread{[this, list = std::move(answers)] { play(list); }};
-  }
-  ~Played() { end(); }
-  Played(const Played&) = delete;
-  Played& operator=(const Played&) = delete;
-
-  const std::vector<std::string>& end() {
-    if (plays_.joinable()) plays_.join();
-    return heard_;
-  }
-
- private:
-  void play(const std::vector<std::string>& answers) {
-    const host::Descriptor socket{::accept4(listener_.get(), nullptr, nullptr, SOCK_CLOEXEC)};
-    for (const std::string& answer : answers) {
-      if (!take(socket)) return;
-      if (answer.empty())
-        while (take(socket)) {
-        }
-      static_cast<void>(::send(socket.get(), answer.data(), answer.size(), MSG_NOSIGNAL));
-    }
-  }
-  bool take(const host::Descriptor& socket) {
-    std::string text(1000, '\0');
-    const auto size = ::recv(socket.get(), text.data(), text.size(), 0);
-    if (size <= 0) return false;
-    heard_.push_back(text.substr(0, static_cast<std::size_t>(size)));
-    return true;
-  }
-
-  host::Descriptor listener_;
-  std::thread plays_;
-  std::vector<std::string> heard_;
-};
-
 /// Connected to it, as a verb `goto` would be.
 std::unique_ptr<LocalLink> connected(const std::string& path) {
   auto link = LocalLink::connect(path, "the thing", "goto", 30s);
@@ -107,7 +61,7 @@ TEST_CASE("local link: where none serves there is none") {
   const auto none = LocalLink::connect(folder.file("none.sock"), "the thing", "goto");
   REQUIRE(none);
   CHECK(*none == nullptr);
-  { Played{folder.file("dead.sock"), {}}; }
+  { PlayedServer{folder.file("dead.sock"), {}}; }
   const auto dead = LocalLink::connect(folder.file("dead.sock"), "the thing", "goto");
   REQUIRE(dead);
   CHECK(*dead == nullptr);
@@ -118,9 +72,9 @@ TEST_CASE("local link: where none serves there is none") {
 
 TEST_CASE("local link: a greeting, and each kind of answer") {
   const Folder folder;
-  Played server{folder.file("a.sock"),
-                {"ok\nguard", "ok", "ok\ntwo\nlines", "wait", "no\nit is full\nempty it", "no\nit is full",
-                 "what\nis this"}};
+  PlayedServer server{folder.file("a.sock"),
+                      {"ok\nguard", "ok", "ok\ntwo\nlines", "wait", "no\nit is full\nempty it",
+                       "no\nit is full", "what\nis this"}};
   auto link = connected(folder.file("a.sock"));
   CHECK(link->greeting() == "guard");
   CHECK(link->process() == fmt::format(" (process {})", ::getpid()));
@@ -148,7 +102,7 @@ TEST_CASE("local link: a greeting, and each kind of answer") {
 TEST_CASE("local link: the longest answer comes whole") {
   const Folder folder;
   const std::string rows(cli::longest_local_message - 3, 'x');
-  Played server{folder.file("a.sock"), {"ok\nguard", "ok\n" + rows}};
+  PlayedServer server{folder.file("a.sock"), {"ok\nguard", "ok\n" + rows}};
   auto link = connected(folder.file("a.sock"));
   const auto answer = link->ask("rows", 30s);
   CHECK(answer.kind == LocalAnswer::Kind::ok);
@@ -157,7 +111,7 @@ TEST_CASE("local link: the longest answer comes whole") {
 
 TEST_CASE("local link: one that has ended, and asks no more") {
   const Folder folder;
-  Played server{folder.file("a.sock"), {"ok\nguard"}};
+  PlayedServer server{folder.file("a.sock"), {"ok\nguard"}};
   auto link = connected(folder.file("a.sock"));
   server.end();
   link->set_who("operator guard");
@@ -172,7 +126,7 @@ TEST_CASE("local link: one that has ended, and asks no more") {
 
 TEST_CASE("local link: after a silence there is no other answer") {
   const Folder folder;
-  Played server{folder.file("a.sock"), {"ok\nguard", ""}};
+  PlayedServer server{folder.file("a.sock"), {"ok\nguard", ""}};
   {
     auto link = connected(folder.file("a.sock"));
     CHECK(link->ask("status", 10ms).failure.what == "the thing" + link->process() + " does not answer");
@@ -185,12 +139,12 @@ TEST_CASE("local link: after a silence there is no other answer") {
 TEST_CASE("local link: one that does not greet, or turns this program away") {
   const Folder folder;
   {
-    Played silent{folder.file("silent.sock"), {""}};
+    PlayedServer silent{folder.file("silent.sock"), {""}};
     const auto link = LocalLink::connect(folder.file("silent.sock"), "the thing", "goto", 10ms);
     REQUIRE_FALSE(link);
     CHECK(link.error.what == fmt::format("the thing (process {}) does not answer", ::getpid()));
   }
-  Played full{folder.file("full.sock"), {"no\n64 programs are connected already\nend some"}};
+  PlayedServer full{folder.file("full.sock"), {"no\n64 programs are connected already\nend some"}};
   const auto link = LocalLink::connect(folder.file("full.sock"), "the thing", "goto", 30s);
   REQUIRE_FALSE(link);
   CHECK(link.error.what == "64 programs are connected already");
@@ -206,7 +160,7 @@ TEST_CASE("local link: names of sockets") {
   CHECK(digits != cli::digits_of_path(folder.file("other")));
   std::filesystem::create_symlink(folder.file("line"), folder.file("link"));
   CHECK(cli::digits_of_path("/") == fmt::format("{:08x}", (0x811C9DC5U ^ '/') * 0x01000193U));
-  { Played{folder.file("line"), {}}; }  // a link to a file that is there
+  { PlayedServer{folder.file("line"), {}}; }  // a link to a file that is there
   CHECK(cli::digits_of_path(folder.file("link")) == digits);
 }
 
