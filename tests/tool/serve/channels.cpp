@@ -220,4 +220,27 @@ TEST_CASE("publisher: the text of a sample is what its channel has") {
   CHECK("0 0 " + desk.publisher.text_of(sample) == desk.said().at(0));
 }
 
+TEST_CASE("publisher: packets of J1939 are counted of all interfaces") {
+  protocol::FrameLayout layout;
+  layout.length = 9;
+  layout.address = {protocol::Address::By::pgn, true, 0x18FEEC00};
+  protocol::Topic topic;
+  topic.name = "VI";
+  topic.kind = protocol::Kind::message;
+  topic.board = protocol::no_board;
+  topic.frames = {&layout, 1};
+  const std::vector<protocol::Topic> topics{topic};
+  const protocol::Catalogue truck{"truck", 250'000, {}, topics};
+  const Channels channels{truck, Strings{"can0", "can1"}};
+  Viewers viewers{channels.all().size()};
+  Publisher publisher{truck, channels, viewers};
+  for (const char* const interface : {"can0", "can1", "can1"})
+    CHECK(
+        publisher
+            .take(test::entry(0s, 0x1CECFF00, {0x20, 9, 0, 2, 0xFF, 0xEC, 0xFE, 0x00}, can::Format::extended),
+                  interface)
+            .meaning == Meaning::transport);
+  CHECK(publisher.counters().transport == 3);
+}
+
 }  // namespace serve_channels_test

@@ -220,4 +220,15 @@ TEST_CASE("driver: its own rest ends only the motors that it is for") {
   CHECK(driver.must_rest(1, 0x202));
 }
 
+TEST_CASE("driver: of a viewer that has gone it is not known any more that it can say rest") {
+  Driver driver;
+  Driver::Frames out;
+  REQUIRE(driver.drive(1, hold(0), begin, out).empty());
+  driver.gone(1, out);
+  REQUIRE(driver.drive(1, hold(5), begin + 1s, out).empty());
+  REQUIRE(driver.advance(begin + 1500ms, out));
+  CHECK(driver.drive(1, hold(5), begin + 3s, out).empty());  // a panel that was pressed again
+  CHECK(driver.drives());
+}
+
 }  // namespace serve_driver_test

@@ -34,9 +34,10 @@ TEST_CASE("behaviours that frames have begun, and what ends them", "[shared]") {
   CHECK(left({"10B#50C300000000E803"}) == "travel 10B#0000000000000000\n");  // at its priority
   CHECK(left({"20B#50C300000000E803", "20B#0000000000000000"}).empty());
   CHECK(left({"20B#50C300000000E803", "10B#0000000000000000"}).empty());
-  // Neither motors, nor what is too short, nor a request, nor an extended identifier.
-  CHECK(
-      left({"201#A086010000000000", "20B#50C300", "608#000000000000", "0000020B#50C300000000E803"}).empty());
+  // Neither motors, nor a light, nor what is too short, nor a request, nor an extended identifier.
+  CHECK(left({"201#A086010000000000", "23C#010203", "20B#50C300", "608#000000000000",
+              "0000020B#50C300000000E803"})
+            .empty());
 }
 
 TEST_CASE("behaviours that frames have begun, in words", "[shared]") {

@@ -1,5 +1,8 @@
 // Who moves the robot, as frames on the bus show it.
 #include <array>
+#include <initializer_list>
+#include <utility>
+#include <vector>
 
 #include <catch2/catch.hpp>
 
@@ -98,6 +101,30 @@ TEST_CASE("motors: a spec without that sensor, or with another one of its name, 
   topics[0].frames = frames;
   const protocol::Catalogue without_end{"robot", 250'000, test::boards, topics};
   CHECK_FALSE(BehaviourSensor{without_end}.exists());
+}
+
+TEST_CASE("motors: a rest of what no watchdog ends, such as a travel, is the end of one") {
+  const auto ends = [](std::initializer_list<std::pair<const char*, std::int64_t>> set_points) {
+    client::Command command;
+    for (const auto& [name, first] : set_points) {
+      const protocol::Topic& topic = *amiro::catalogue.find(name);
+      std::vector<std::int64_t> raw(topic.frames[0].fields.size(), 0);
+      raw[0] = first;
+      command.frames.push_back(client::set_point(topic, raw));
+    }
+    return ends_travel(amiro::catalogue, command);
+  };
+  CHECK_FALSE(ends({}));
+  CHECK(ends({{"travel", 0}}));
+  CHECK(ends({{"led_1", 1}, {"travel", 0}}));
+  CHECK_FALSE(ends({{"travel", 1}}));
+  for (const char* const other : {"motors", "follow", "led_1"}) {
+    CAPTURE(other);
+    CHECK_FALSE(ends({{other, 0}}));
+  }
+  client::Command unknown;
+  unknown.frames.push_back(frame(0x7FF, 1));
+  CHECK_FALSE(ends_travel(amiro::catalogue, unknown));
 }
 
 }  // namespace motors_test

@@ -144,4 +144,63 @@ TEST_CASE("stats report: one object, and lines, without a bit rate and with two"
   is_as_in("tests/tool/stats/golden/rates.txt", all);
 }
 
+TEST_CASE("stats report: five strangers are named, those that come most first, and others in their order") {
+  stats::Report report;
+  report.buses.resize(1);
+  auto& figures = report.buses[0].figures;
+  for (std::uint32_t i = 0; i < 5; ++i)
+    figures.strangers.push_back({0x700 + i, can::Format::base, i == 3 ? 2U : 1U});
+  figures.counters.unknown = 6;
+  const auto text = [&] {
+    std::string all;
+    for (const std::string& line : stats::to_table(report, {}, false)) all += line + "\n";
+    return all;
+  };
+  CHECK_THAT(text(), Catch::Contains("has (703 2, 700 1, 701 1, 702 1, 704 1)\n"));
+  figures.strangers.push_back({0x705, can::Format::base, 1});
+  CHECK_THAT(text(), Catch::Contains("has (703 2, 700 1, 701 1, 702 1, 704 1, ...)\n"));
+}
+
+TEST_CASE("stats report: what J1939's transport protocol has lost") {
+  stats::Report report;
+  report.buses.resize(1);
+  auto& transport = report.buses[0].figures.transport;
+  const auto text = [&] {
+    std::string all;
+    for (const std::string& line : stats::to_table(report, {}, false)) all += line + "\n";
+    return all + stats::to_json(report, {}, {});
+  };
+  transport.lost_packet = 1;
+  CHECK_THAT(text(), Catch::Contains("  1 message of it that was not put together\n"));
+  transport.stray = 2;
+  transport.malformed = 1;
+  transport.timed_out = 1;
+  CHECK_THAT(text(), Catch::Contains(
+                         "  2 messages of it that were not put together, 3 frames of it of no message\n"));
+  CHECK_THAT(text(), Catch::Contains(R"("transport_lost":2,"transport_stray":3,)"));
+}
+
+TEST_CASE(
+    "stats: a message has not come where a bus was looked at for its period, and not where none is stated") {
+  protocol::FrameLayout layout;
+  layout.length = 8;
+  layout.address = {protocol::Address::By::identifier, false, 0x123};
+  std::array<protocol::Topic, 2> topics;
+  for (protocol::Topic& topic : topics) {
+    topic.kind = protocol::Kind::message;
+    topic.board = protocol::no_board;
+    topic.frames = {&layout, 1};
+  }
+  topics[0].name = "Periodic", topics[1].name = "Any";
+  topics[0].cycle = base::Duration{100'000'000};
+  const protocol::Catalogue catalogue{"car", 500'000, {}, topics};
+  const stats::Collector collector{catalogue, [](std::string_view) { return measure::BitRates{500'000, 0}; }};
+  std::vector<stats::Bus> buses(2);
+  buses[1].figures.first = base::Time{base::Duration{5}};
+  buses[1].figures.last = buses[1].figures.first + topics[0].cycle;
+  CHECK(collector.never_came(buses) == std::vector<const protocol::Topic*>{&catalogue.topics[0]});
+  buses[1].figures.last -= base::Duration{1};
+  CHECK(collector.never_came(buses).empty());
+}
+
 }  // namespace stats_report_test
