@@ -372,6 +372,7 @@ class OnSerialLines(Case):
             if not full:  # the kernel, which may be late, has made the last room that there is without a reader
                 waiting.until(lambda: robot.waits() >= 4095, "the robot's buffer is full")
         self.settle()
+        talk.robot = robot
         return talk
 
     def test_packets_that_a_robot_did_not_take_are_told_at_the_end(self):
@@ -383,6 +384,35 @@ class OnSerialLines(Case):
         talk.type("*drop 0\n")
         talk.wait_for("closed 0\n")
         self.assertRegex(talk.end(), r"server .*\b64 packets dropped with their link")
+
+    def test_what_waits_at_the_end_of_the_input_still_goes_to_a_robot_that_reads_late(self):
+        """It has a second for that, which on a busy machine may pass without it: once is enough."""
+        def all_went():
+            talk = self.flooded()
+            talk.process.stdin.close()
+            time.sleep(0.1)  # it is late
+
+            def over():
+                talk.robot.hear(limit=0.05)
+                return talk.process.poll() is not None
+            waiting.until(over, "the end")
+            self.assertEqual(talk.process.returncode, 0)
+            return "not sent" not in talk.process.stderr.read()
+        self.assertTrue(any(all_went() for _ in range(5)))
+
+    def test_a_robot_that_never_reads_holds_up_no_end(self):
+        self.assertIn("64 packets not sent at the end", self.flooded().end())
+
+    def test_the_end_of_the_input_is_the_end_where_nothing_waits(self):
+        """At once: in the second that packets have it looks each 5 ms, and would sleep 200 times."""
+        def sleeps():
+            process = self.start("central", "--robot", f"AVR={self.robot().path}", stdout=subprocess.DEVNULL,
+                                 stderr=subprocess.DEVNULL)
+            waiting.until(process.has_ended, "the end")
+            _, process.returncode, usage = os.wait4(process.pid, 0)
+            self.assertEqual(process.returncode, 0)
+            return usage.ru_nvcsw
+        self.assertLess(min(sleeps() for _ in range(3)), 100)
 
     def test_wrong_usage(self):
         for arguments, words in ((["--robot", "AVR"], "is not NAME=PATH"),
