@@ -237,7 +237,7 @@ std::string Owner::rows(LineCaller& caller, const LineRequest& request) {
   std::vector<mapper::server::Peer> peers = server_->client().peers();
   std::sort(peers.begin(), peers.end(), [](const auto& a, const auto& b) { return a.index < b.index; });
   for (const mapper::server::Peer& peer : peers) {
-    if (peer.index < request.robot || peer.index >= orders_.size()) continue;
+    if (peer.index < request.robot) continue;
     const std::string row = json ? to_json(robot(peer.index)).line() : to_row(robot(peer.index));
     if (text.size() + row.size() > most_of_rows) return yes(text + fmt::format("more {}\n", peer.index));
     text += row + "\n";
