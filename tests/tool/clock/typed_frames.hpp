@@ -1,24 +1,14 @@
-/// Frames that a test types, and a bus on which others send them.
+/// A bus on which others send frames that a test types; apart from the bus, which programs without Catch
+/// play, too.
 #pragma once
 
-#include <string_view>
 #include <utility>
 #include <vector>
 
-#include <catch2/catch.hpp>
-
-#include "ocm/can/text.hpp"
-
 #include "tests/tool/clock/played_bus.hpp"
+#include "tests/unit/can/frame_of.hpp"
 
 namespace ocm::test {
-
-/// As candump writes it.
-inline can::Frame frame(std::string_view text) {
-  const auto parsed = can::parse_frame(text);
-  REQUIRE(parsed.ok());
-  return *parsed;
-}
 
 /// What comes from others, and when, from the start.
 using Frames = std::vector<std::pair<Duration, const char*>>;
