@@ -1,16 +1,20 @@
 # ocm_rooms(TARGET ROOM... [ALONE FILE...] [EXCEPT FILE...]): adds to TARGET the sources of each folder, compiled as one
-# file a folder. Those behind ALONE are compiled one by one, those behind EXCEPT are not of the target. OCM_UNITY=OFF
-# compiles each file by itself.
+# file a folder; folders joined by a '+' are compiled as one together, for what several small rooms include is then compiled
+# once. Those behind ALONE are compiled one by one, those behind EXCEPT are not of the target. OCM_UNITY=OFF compiles each
+# file by itself.
 option(OCM_UNITY "Compile each room of the tools at once, and several tests of a floor" ON)
 
 function(ocm_rooms target)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "ALONE;EXCEPT")
-  foreach(room IN LISTS arg_UNPARSED_ARGUMENTS)
-    file(GLOB sources CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR}/${room}/*.cpp)
+  foreach(rooms IN LISTS arg_UNPARSED_ARGUMENTS)
+    string(REPLACE "+" ";" folders ${rooms})
+    string(REPLACE "+" "_" group ${rooms})
+    list(TRANSFORM folders REPLACE "(.+)" "${CMAKE_CURRENT_SOURCE_DIR}/\\1/*.cpp")
+    file(GLOB sources CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} ${folders})
     list(REMOVE_ITEM sources "" ${arg_EXCEPT})
     target_sources(${target} PRIVATE ${sources})
     list(REMOVE_ITEM sources "" ${arg_ALONE})
-    set_source_files_properties(${sources} PROPERTIES UNITY_GROUP ${room})
+    set_source_files_properties(${sources} PROPERTIES UNITY_GROUP ${group})
   endforeach()
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${OCM_UNITY} UNITY_BUILD_MODE GROUP)
 endfunction()
