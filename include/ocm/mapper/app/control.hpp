@@ -36,6 +36,7 @@ class Control {
       shared_.control_due = false;
       at = shared_.moment_locked();
       order = shared_.orders.take_locked();  // given in this state, and not switched off since
+      if (order) ++shared_.orders_taken;
     }
     if (at.epoch != controlled_epoch_) pilot_.stop();
     if (at.resets != controlled_resets_) pilot_.forget();

@@ -269,8 +269,9 @@ class Robot {
                      shared_.model->minimum_distance_cm)) {
         [[maybe_unused]] const auto guard = shared_.lock();
         ++shared_.counters.collisions;
-        // A set point that came while the tower looked is newer than what it saw.
-        if (at.epoch == shared_.epoch && shared_.orders.empty_locked())
+        // A set point that came while the tower looked is newer than what it saw, also one that is obeyed
+        // already.
+        if (at.epoch == shared_.epoch && at.orders == shared_.orders_taken && shared_.orders.empty_locked())
           shared_.orders.put_locked({.halt = true, .set_point = {}});
       }
     }

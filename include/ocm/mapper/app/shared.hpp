@@ -57,6 +57,7 @@ struct Moment {
   std::uint32_t epoch = 0;
   std::uint32_t resets = 0;
   std::uint32_t links = 0;
+  std::uint32_t orders = 0;  ///< that the pose controller has taken
 };
 
 /// In seconds.
@@ -93,7 +94,9 @@ struct Shared {
     [[maybe_unused]] const auto guard = lock();
     return moment_locked();
   }
-  [[nodiscard]] Moment moment_locked() const noexcept { return {state, motion, epoch, resets, links}; }
+  [[nodiscard]] Moment moment_locked() const noexcept {
+    return {state, motion, epoch, resets, links, orders_taken};
+  }
   [[nodiscard]] State state_now() const noexcept {
     [[maybe_unused]] const auto guard = lock();
     return state;
@@ -182,7 +185,8 @@ struct Shared {
   std::uint32_t epoch = 0;   ///< how often the motors were switched off
   std::uint32_t resets = 0;  ///< how many operators confirmed
   std::uint32_t links = 0;   ///< how many links died
-  base::Time entered{};      ///< into this state
+  std::uint32_t orders_taken = 0;
+  base::Time entered{};  ///< into this state
   base::Time lost_at{};
   base::Time last_communication{};
   base::Time supervision_due{};

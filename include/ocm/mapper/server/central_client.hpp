@@ -175,6 +175,7 @@ class CentralClient {
   void done() {
     requests_.pop_front();
     attempts_ = 0;
+    waits_ = 0;
     stage_ = Stage::begin;
     deadline_ = base::never;
   }
@@ -350,10 +351,8 @@ class CentralClient {
   }
   /// The central is busy with another link: later.
   void again(base::Time now) {
-    if (++waits_ * options_.again > options_.connect) {
-      waits_ = 0;
+    if (++waits_ * options_.again > options_.connect)
       return fail("the central is still busy with another link");
-    }
     await(Stage::pausing, now, options_.again);
   }
 

@@ -257,12 +257,14 @@ struct BasicBench {
     parts.sent.clear();
   }
   /// Says it, and 21 ms later communication has heard it: in the middle of a job of a lower level.
-  void preempt(std::string_view text) {
+  /// `least`: the least urgent level that runs meanwhile.
+  void preempt(std::string_view text, scheduling::Level least = scheduling::Level::high) {
     say(text);
     for (int i = 0; i < 21; ++i) parts.step();
     port.advance(now += 21ms);
     robot.expire();
-    for (const auto level : {scheduling::Level::urgent, scheduling::Level::high}) robot.run(level);
+    for (const auto level : {scheduling::Level::urgent, scheduling::Level::high, scheduling::Level::medium})
+      if (level <= least) robot.run(level);
   }
   /// Says it, and waits until it has ended.
   bool drive(std::string_view sentence, base::Duration most = 120s) {

@@ -210,7 +210,11 @@ TEST_CASE("mapper: paused while the tower looks, it keeps what it saw to itself"
 
 TEST_CASE("mapper: a set point that comes while the tower sees a wall is not taken for the old one",
           "[mapper]") {
-  for (const std::string_view order : {"{U,90,0}\n", "{U,0,0}{U,90,0}\n"}) {
+  using scheduling::Level;
+  // Communication has heard it; then the pose controller drives to it already.
+  for (const auto& [order, least] : {std::pair{"{U,90,0}\n", Level::high},
+                                     {"{U,0,0}{U,90,0}\n", Level::high},
+                                     {"{U,90,0}\n", Level::medium}}) {
     Bench bench;
     bench.confirm();
     bench.say("{U,0,100}\n");
@@ -218,7 +222,7 @@ TEST_CASE("mapper: a set point that comes while the tower sees a wall is not tak
     bench.run_until([&] { return bench.parts.servo_deg == 0; }, 10s);
     bench.run_for(150ms);
     bench.parts.distance = [](float) { return 12.0F; };  // of a sudden, all round
-    within_a_look(bench, [&] { bench.preempt(order); });
+    within_a_look(bench, [&, order = order, least = least] { bench.preempt(order, least); });
     bench.parts.distance = [](float) { return 200.0F; };
     REQUIRE(bench.run_until([&] { return !bench.robot.busy(); }, 20s));
     CHECK(bench.robot.counters().collisions == 1);

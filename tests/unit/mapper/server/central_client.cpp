@@ -240,6 +240,23 @@ TEST_CASE("central client: the central is reset") {
   CHECK(bench.count(Event::connected) == 2);
 }
 
+TEST_CASE("central client: each request waits for a busy central with a time of its own") {
+  Bench bench;
+  for (const char* name : {"a", "b", "c"}) bench.central.add(name);
+  bench.client.scan(300ms);
+  bench.advance(1s);
+  bench.central.connecting = 6s;
+  for (const unsigned robot : {0U, 2U}) {
+    bench.central.write("conn 1\n");  // another program's
+    bench.client.connect(robot);
+    bench.advance(20s);
+    CHECK(bench.client.peers()[robot].linked);
+    bench.central.write("drop 1\n");
+    bench.advance(1s);
+  }
+  CHECK(bench.count(Event::failed) == 0);
+}
+
 TEST_CASE("central client: the queue is bounded") {
   CentralClientOptions options;
   options.most_requests = 2;
