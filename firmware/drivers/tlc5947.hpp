@@ -1,7 +1,7 @@
 /// LED driver TLC5947: 24 outputs of 12 bits, here eight coloured lights.
 ///
 /// The chip select of its SPI device is the pin XLAT: data taken while it is low, used when it rises. 36
-/// bytes, 64 us at 4.5 MHz. The part cannot be asked anything. Errors: those of the bus.
+/// bytes, 16 us at 18 MHz. The part cannot be asked anything. Errors: those of the bus.
 /// [data sheet: TI TLC5947, SBVS114B]
 #pragma once
 

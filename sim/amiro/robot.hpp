@@ -10,6 +10,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "ocm/analysis/board_admission.hpp"
@@ -40,12 +41,14 @@ class SimulatedRobot {
     light_ring_.controller().report(switched_on);
   }
 
-  /// A frame that every board hears, complete on the bus at `now`. Call `advance` afterwards.
-  void receive(const can::Frame& frame, base::Time now) noexcept {
+  /// A frame that every board hears that is switched on, complete on the bus at `now`. Call `advance`
+  /// afterwards.
+  void receive(const can::Frame& frame, base::Time now,
+               const std::array<bool, 3>& on = {true, true, true}) noexcept {
     pass_until(now);
-    di_wheel_drive_.receive(frame, now);
-    power_management_.receive(frame, now);
-    light_ring_.receive(frame, now);
+    if (on[0]) di_wheel_drive_.receive(frame, now);
+    if (on[1]) power_management_.receive(frame, now);
+    if (on[2]) light_ring_.receive(frame, now);
   }
 
   /// Lets the world go on until `now`, and the boards do what is due.

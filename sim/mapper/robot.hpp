@@ -155,6 +155,8 @@ class Robot {
 
   /// One step, from the `step`th millisecond to the next.
   void move(const Surroundings& around, std::int64_t step) noexcept {
+    const bool unhindered = unhindered_steps_ > 0;
+    if (unhindered) --unhindered_steps_;  // also at rest: others come nearer
     servo_.step();
     const double left_m = left_.step() * left_m_per_tick_;
     const double right_m = right_.step() * right_m_per_tick_;
@@ -168,7 +170,8 @@ class Robot {
     const Pose before = pose_;
     pose_ = arc(before, ahead, turn);
     turn_rad_per_s_ = turn / step_s;
-    stay_outside(around, before);
+    touching_ = false;
+    if (!unhindered) stay_outside(around, before);
   }
 
   /// Each sensor with a new sample since the last step takes it now.
@@ -219,11 +222,6 @@ class Robot {
 
   void stay_outside(const Surroundings& around, const Pose& before) noexcept {
     const Disc wanted = disc();
-    touching_ = false;
-    if (unhindered_steps_ > 0) {
-      --unhindered_steps_;
-      return;
-    }
     const Vector was = before.place_of({model_.body.centre_ahead_m, 0});
     Vector centre = wanted.centre;
     touching_ = keep_out(centre, was, [&](Vector at) {

@@ -93,12 +93,12 @@ class QemuRobot {
     return robot;
   }
 
-  /// A frame that every board hears that its CAN controller lets through.
-  void receive(const can::Frame& frame, base::Time now) {
+  /// A frame that every board hears that is switched on, and whose CAN controller lets it through.
+  void receive(const can::Frame& frame, base::Time now, const std::array<bool, boards>& on) {
     world_.advance_to(now);
     if (frame.format != can::Format::base) return;
     for (std::size_t i = 0; i < boards; ++i)
-      if (kinds[i].accepts(frame.id)) qemu_[i]->hear(frame);
+      if (on[i] && kinds[i].accepts(frame.id)) qemu_[i]->hear(frame);
   }
 
   /// Serves the boards' parts and takes what they send: `send(board, frame) -> bool`, false when there is no

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <deque>
 #include <memory>
 #include <optional>
 #include <poll.h>
@@ -73,7 +74,14 @@ void show(const Boards& boards, const Shell& shell) {
 
 Ending serve_amiro(transport::Bus& bus, const AmiroOptions& options, const Shell& shell) {
   Ports ports;
-  for (Port& port : ports) port.hand_over = [&bus](const can::Frame& frame) { return bus.send(frame); };
+  std::deque<can::Frame> sent;  // by a board, for the others: a bus does not give back what it was given
+  for (Port& port : ports) {
+    port.hand_over = [&bus, &sent](const can::Frame& frame) {
+      const auto taken = bus.send(frame);
+      if (taken && *taken) sent.push_back(frame);
+      return taken;
+    };
+  }
   if (const auto problem = switch_off(options.without, ports)) return Ending{*problem, true};
   const SimulatedClock clock{1};
   const auto made = make_boards(options, ports, clock);
@@ -83,8 +91,10 @@ Ending serve_amiro(transport::Bus& bus, const AmiroOptions& options, const Shell
   while (!shell.stop()) {
     if (!boards.advance(clock.now())) return Ending{boards.failure()};
     show(boards, shell);
+    const bool heard = !sent.empty();
+    for (; !sent.empty(); sent.pop_front()) boards.receive(sent.front(), clock.now());
     auto received = bus.receive(base::Duration{0});
-    if (!received && received.error == base::Error::timed_out) {
+    if (!heard && !received && received.error == base::Error::timed_out) {
       wait_for(bus.descriptor(), boards,
                boards.waiting() ? base::Duration{std::chrono::milliseconds{1}}
                                 : shell.limited(clock.until(boards.next_event())));
@@ -146,14 +156,15 @@ Ending serve_amiro(const std::string& path, const AmiroOptions& options, const S
   while (!shell.stop()) {
     const base::Time now = clock.now();
     Round round{now};
-    interference.disturb(arbiter, now);
     // Whatever falls due until now, in the order in which it does.
     for (base::Time next = next_event(); round.takes(next); next = next_event()) {
+      interference.disturb(arbiter, next);
       server.advance(next, hear);
       messages.advance(next);
       if (!boards.advance(next)) return Ending{boards.failure()};
     }
     if (options.qemu && !boards.advance(round.reached())) return Ending{boards.failure()};
+    interference.disturb(arbiter, round.reached());
     server.poll(round.reached(), hear);
     lateness.note(round, clock);
     show(boards, shell);

@@ -22,7 +22,8 @@ namespace ocm::sim {
 inline constexpr std::array<std::string_view, 3> board_names{
     amiro::DiWheelDrive::name, amiro::PowerManagement::name, amiro::LightRing::name};
 
-/// A board's connection to whatever bus there is. A board that is switched off sends nothing.
+/// A board's connection to whatever bus there is. A board that is switched off sends nothing, and hears
+/// nothing.
 struct Port {
   std::function<base::Result<bool>(const can::Frame&)> hand_over;
   bool on = true;
@@ -34,6 +35,9 @@ struct Port {
 
 /// One for each board, in the order of `board_names`.
 using Ports = std::array<Port, board_names.size()>;
+[[nodiscard]] inline std::array<bool, board_names.size()> switched_on(const Ports& ports) noexcept {
+  return {ports[0].on, ports[1].on, ports[2].on};
+}
 
 class Boards {
  public:

@@ -15,7 +15,9 @@ class HostBoards final : public Boards {
  public:
   HostBoards(const WorldOptions& world, Ports& ports)
       : ports_(&ports), robot_{world, ports[0], ports[1], ports[2]} {}
-  void receive(const can::Frame& frame, base::Time now) override { robot_.receive(frame, now); }
+  void receive(const can::Frame& frame, base::Time now) override {
+    robot_.receive(frame, now, switched_on(*ports_));
+  }
   base::Status advance(base::Time now) override {
     robot_.advance(now);
     return {};

@@ -16,7 +16,8 @@ class Interference {
       : random_(seed), seconds_(bits_per_second > 0 ? bits_per_second : 1), on_(bits_per_second > 0) {
     if (on_) step();
   }
-  /// Disturbs what lies within a second from `now`: always ahead of what the bus has done.
+  /// Disturbs what lies within a second from `now`, what the bus has come to: always ahead of what it has
+  /// done, and never further, however late it is.
   void disturb(simulation::Arbiter& bus, base::Time now) {
     for (; on_ && next_ <= now + std::chrono::seconds{1}; step())
       bus.disturb({bus.clock().boundary_from(next_), flag_bits_(random_)});

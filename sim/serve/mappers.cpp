@@ -6,6 +6,7 @@
 #include <memory>
 #include <poll.h>
 #include <span>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -18,6 +19,7 @@
 
 #include "sim/mapper/fleet.hpp"
 #include "sim/serve/clock.hpp"
+#include "sim/serve/round.hpp"
 #include "sim/worlds/reader.hpp"
 
 namespace ocm::sim {
@@ -188,14 +190,20 @@ Ending serve_fleet(plant::World& world, const MapperOptions& options, const Shel
   shell.report(fmt::format("simulated {} in '{}', their central on {}; Ctrl-C ends it",
                            client::counted(fleet->size(), "mapper"), world.model().name, line.name()));
   const SimulatedClock clock{options.speed};
+  Lateness lateness{shell.report};
   while (!shell.stop()) {
-    fleet->advance_to(clock.now());
+    Round round{clock.now()};
+    for (base::Time next = fleet->next_event(); round.takes(next); next = fleet->next_event())
+      fleet->advance_to(next);
+    fleet->advance_to(round.reached());
+    lateness.note(round, clock);
     fleet->write(line.read());
     line.write(fleet->read());
     if (shell.watch) shell.watch([&world] { return seen(world); });
     wait(line.inputs(), std::min(clock.until(fleet->next_event()), look_period));
   }
   summarise(*fleet, line, shell);
+  lateness.sum_up();
   return {};
 }
 
@@ -231,13 +239,22 @@ class OwnLine {
 static_assert(plant::RobotLink<OwnLine>);
 using LinedRobot = plant::RunningRobot<OwnLine>;
 
+/// One of its own for each name: what a name of a line cannot have is written as %2F.
+std::string file_name(std::string_view name) {
+  std::string text;
+  for (std::size_t i = 0; i < name.size(); ++i) {
+    const bool is_end = name.substr(i) == ".lock";  // a line has a lock file beside it
+    const bool stays = name[i] != '/' && name[i] != '%' && !(name[i] == '.' && (i == 0 || is_end));
+    text += stays ? std::string{name[i]} : fmt::format("%{:02X}", static_cast<unsigned char>(name[i]));
+  }
+  return text;
+}
+
 Ending serve_lines(plant::World& world, const MapperOptions& options, const Shell& shell) {
   std::vector<std::unique_ptr<OwnLine>> lines;
   std::vector<std::unique_ptr<LinedRobot>> robots;
   for (std::size_t i = 0; i < world.size(); ++i) {
-    std::string name = world.robot(i).name();
-    std::replace(name.begin(), name.end(), '/', '_');
-    auto opened = transport::Pty::open(transport::robot_lines() + "/" + name);
+    auto opened = transport::Pty::open(transport::robot_lines() + "/" + file_name(world.robot(i).name()));
     if (!opened) return Ending{opened.error};
     if (!options.uncalibrated) plant::calibrate(world.robot(i));
     lines.push_back(std::make_unique<OwnLine>(std::move(*opened)));
@@ -256,9 +273,12 @@ Ending serve_lines(plant::World& world, const MapperOptions& options, const Shel
     world.advance_to(now);
     for (const auto& robot : robots) robot->advance_to(now);
   };
+  Lateness lateness{shell.report};
   while (!shell.stop()) {
-    const base::Time now = clock.now();
-    for (base::Time next = next_event(); next <= now; next = next_event()) happen(next);
+    Round round{clock.now()};
+    for (base::Time next = next_event(); round.takes(next); next = next_event()) happen(next);
+    const base::Time now = round.reached();
+    lateness.note(round, clock);
     std::vector<pollfd> inputs;
     for (std::size_t i = 0; i < robots.size(); ++i) {
       if (lines[i]->look()) robots[i]->link_changed(now);
@@ -270,6 +290,7 @@ Ending serve_lines(plant::World& world, const MapperOptions& options, const Shel
     wait(inputs, std::min(clock.until(next_event()), look_period));
   }
   for (const auto& robot : robots) report_robot(*robot, "", shell);
+  lateness.sum_up();
   return {};
 }
 

@@ -135,11 +135,12 @@ Ending serve_messages(const std::string& path, const protocol::Catalogue& catalo
   while (!shell.stop()) {
     const base::Time now = clock.now();
     Round round{now};
-    interference.disturb(wire, now);
     for (base::Time next = next_event(); round.takes(next); next = next_event()) {
+      interference.disturb(wire, next);
       server.advance(next, hear);
       nodes.advance(next);
     }
+    interference.disturb(wire, round.reached());
     server.poll(round.reached(), hear);
     lateness.note(round, clock);
     wait_for(server.descriptor(), clock.until(next_event()));

@@ -14,7 +14,9 @@ namespace {
 class QemuBoards final : public Boards {
  public:
   QemuBoards(std::unique_ptr<QemuRobot> robot, Ports& ports) : ports_(&ports), robot_(std::move(robot)) {}
-  void receive(const can::Frame& frame, base::Time now) override { robot_->receive(frame, now); }
+  void receive(const can::Frame& frame, base::Time now) override {
+    robot_->receive(frame, now, switched_on(*ports_));
+  }
   base::Status advance(base::Time now) override {
     return robot_->advance(now, [this](std::size_t board, const can::Frame& frame) {
       const auto taken = (*ports_)[board].send(frame);

@@ -488,6 +488,15 @@ TEST_CASE("avoid without the ring stands, says so once, and goes on when it is b
   go_on(1s);
   CHECK_FALSE(setup.stands());
   CHECK(setup.robot.power_management().counters().failed == 1);
+  // Begun again without it, it says so again.
+  setup.robot.world().set_absent(sim::Part::ring, true);
+  for (const unsigned failed : {2U, 3U}) {
+    go_on(1s);
+    CHECK(setup.stands());
+    CHECK(setup.robot.power_management().counters().failed == failed);
+    setup.command(amiro::Avoid{});
+    setup.pass(200ms);
+  }
 }
 
 TEST_CASE("avoid is refused beyond its range and without the ring's offsets") {

@@ -401,6 +401,30 @@ TEST_CASE("mapper: with its link it is all that an application asks for") {
   CHECK(world.robot(0).lights() == ocm::mapper::app::Lights{true, false});
 }
 
+TEST_CASE("mapper world: what came near while a robot rested is in its way") {
+  for (const double gap : {0.3, 0.6, 1.0, 1.5}) {
+    World world{
+        open_world({{"one", RobotKind::avr, {}}, {"two", RobotKind::avr, {gap + 0.2, 0, ocm::motion::pi}}})};
+    double deepest = -1;
+    base::Duration now{};
+    const auto drive = [&](std::size_t robot, base::Duration most) {
+      world.robot(robot).drive({0.6F, 0.6F});
+      for (const base::Duration end = now + most; now < end && !world.robot(robot).touching();) {
+        world.advance_to(at(now += 1ms));
+        const Disc one = world.robot(0).disc(), two = world.robot(1).disc();
+        deepest = std::max(deepest, one.radius_m + two.radius_m - length(one.centre - two.centre));
+      }
+      world.robot(robot).drive({});
+      world.advance_to(at(now += 1s));
+    };
+    drive(0, 100ms);  // and knows then how far everything is
+    drive(1, 60s);
+    drive(0, 4s);
+    CHECK(deepest > -1e-3);  // they did meet
+    CHECK(deepest < 1e-6);
+  }
+}
+
 TEST_CASE("mapper world: whatever robots do, none is ever inside a wall or another") {
   const std::vector<Start> starts{{"one", RobotKind::avr, {-0.8, 0, 0}},
                                   {"two", RobotKind::arduino, {0, -0.5, 1}},

@@ -154,7 +154,10 @@ class Board : public Node<amiro::PowerManagement, Bus, P, 1, A> {
     if (!active && !commanding_) return scheduling::Outcome::done;
     amiro::Motors motors;
     if (active) {
-      if (!commanding_) behaviours_ = {};
+      if (!commanding_) {
+        behaviours_ = {};
+        blind_ = false;
+      }
       const auto counts = hardware_->ring();
       const auto offsets = this->offsets();
       const bool blind = !counts || !offsets;

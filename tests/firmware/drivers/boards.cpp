@@ -6,6 +6,9 @@
 
 #include <catch2/catch.hpp>
 
+#include "ocm/protocol/message.hpp"
+#include "ocm/topics/amiro.hpp"
+
 #include "firmware/boards/di_wheel_drive/board.hpp"
 #include "firmware/boards/di_wheel_drive/geometry.hpp"
 #include "firmware/boards/di_wheel_drive/parts.hpp"
@@ -263,6 +266,38 @@ TEST_CASE("driving through drivers: the speed is reached, the ticks are the worl
   CHECK(std::abs(b.world.wheels().right) < 1e-3);
   CHECK(b.models.motors().duty() == std::array<std::int16_t, 2>{0, 0});
   CHECK(b.models.violations().texts() == std::vector<std::string>{});
+}
+
+TEST_CASE("DiWheelDrive: a travel whose steps do not come ends as late, and the wheels stand") {
+  using scheduling::Level;
+  struct Bus {
+    base::Result<bool> send(const can::Frame&) { return true; }
+  } bus;
+  sim::WorldOptions options;
+  options.arena.walls.clear();
+  Bottom b{options};
+  b.start();
+  bottom::Board<Bottom::Parts, Bus> board{b.parts, bus, b.time.now};
+  const auto pass = [&](base::Duration duration, Level least) {
+    for (base::Duration t{}; t < duration; t += 10ms) {
+      b.time.pass(10ms);
+      b.world.advance_to(b.time.now);
+      b.parts.maintain(b.time.now);
+      board.controller().port().advance(b.time.now);
+      board.controller().expire();
+      for (const Level level : {Level::urgent, Level::high, Level::medium, Level::low})
+        if (level <= least) board.controller().run(level);
+    }
+  };
+  amiro::Travel travel;
+  travel.set_distance_m(5);
+  travel.set_speed_m_per_s(0.1);
+  board.receive(protocol::command(travel), b.time.now);
+  pass(1s, Level::low);
+  REQUIRE(b.world.wheels().left == Approx(0.1).margin(0.02));
+  pass(1s, Level::high);  // whatever holds the low level up
+  CHECK(std::abs(b.world.wheels().left) < 1e-3);
+  CHECK(std::abs(b.world.wheels().right) < 1e-3);
 }
 
 TEST_CASE("a weak motor reaches its set point too") {

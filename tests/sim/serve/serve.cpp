@@ -3,7 +3,10 @@
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <functional>
+#include <set>
+#include <span>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -14,6 +17,7 @@
 
 #include "ocm/protocol/message.hpp"
 #include "ocm/topics/amiro.hpp"
+#include "ocm/transport/bus.hpp"
 #include "ocm/transport/virtual_bus.hpp"
 
 #include "sim/serve/amiro.hpp"
@@ -115,6 +119,77 @@ TEST_CASE("A simulation with more to do than the machine does ends when it is as
       overloaded([&](const sim::Shell& shell) { return sim::serve_amiro(folder / "bus", options, shell); });
   CHECK(any_begins(reports, late));
   CHECK(any_begins(reports, "di_wheel_drive"));
+  options.speed = 1000;
+  options.bus_errors = 100'000;  // that lie ahead of the clock would fill the memory
+  CHECK(any_begins(
+      overloaded([&](const sim::Shell& shell) { return sim::serve_amiro(folder / "bus", options, shell); }),
+      late));
+  for (const bool lines : {false, true}) {
+    sim::MapperOptions mappers;
+    mappers.robots = 20;
+    mappers.speed = 1e6;
+    mappers.lines = lines;
+    const auto said = overloaded([&](const sim::Shell& shell) { return sim::serve_mappers(mappers, shell); });
+    CHECK(any_begins(said, late));
+    CHECK(any_begins(said, "late              by "));
+  }
+}
+
+/// A bus that, as a CAN interface does, gives no program back what it sent itself.
+class Interface final : public transport::Bus {
+ public:
+  explicit Interface(std::vector<can::Frame> from_others) : from_others_(std::move(from_others)) {}
+  std::string_view name() const override { return "can9"; }
+  base::Result<bool> send(const can::Frame& frame) override {
+    sent.push_back(frame);
+    return true;
+  }
+  base::Result<can::Received> receive(base::Duration) override {
+    if (next_ == from_others_.size()) return base::Error::timed_out;
+    return can::Received{{}, from_others_[next_++]};
+  }
+  transport::Outcome<void> subscribe(std::span<const can::Filter>) override { return {}; }
+  int descriptor() const override { return -1; }
+  const transport::BusCounters& counters() const override { return counters_; }
+  const transport::Failure& failure() const override { return failure_; }
+
+  std::vector<can::Frame> sent;
+
+ private:
+  std::vector<can::Frame> from_others_;
+  std::size_t next_ = 0;
+  transport::BusCounters counters_{};
+  transport::Failure failure_{};
+};
+
+/// Whether the wheels turn within that time.
+bool drives(Interface& bus, const sim::AmiroOptions& options, std::chrono::milliseconds time) {
+  bool turns = false;
+  const auto end = std::chrono::steady_clock::now() + time;
+  sim::Shell shell{[&] { return turns || std::chrono::steady_clock::now() > end; }, [](std::string_view) {}};
+  shell.watch = [&turns](const std::function<sim::SeenWorld()>& look) {
+    turns = turns || look().robots.at(0).wheels.left != 0;
+  };
+  CHECK(sim::serve_amiro(bus, options, shell).well());
+  return turns;
+}
+
+TEST_CASE(
+    "The boards of an AMiRo on a CAN interface hear each other, and those that are switched off hear "
+    "nothing") {
+  using namespace std::chrono_literals;
+  amiro::Avoid avoid;
+  avoid.set_speed_m_per_s(0.1);
+  Interface obstacles{{protocol::command(avoid)}};
+  CHECK(drives(obstacles, {}, 20s));
+
+  const std::vector<can::Frame> ahead{protocol::command(amiro::Motors{50'000, 0})};
+  Interface on{ahead};
+  CHECK(drives(on, {}, 20s));
+  Interface off{ahead};
+  sim::AmiroOptions without;
+  without.without = {"di_wheel_drive"};
+  CHECK_FALSE(drives(off, without, 300ms));
 }
 
 TEST_CASE("Two programs that drive an AMiRo in turns are named at its end") {
@@ -206,6 +281,29 @@ TEST_CASE("Mappers behind a central, or each on a line, report what each of them
     CHECK(watched.reports[0].starts_with("simulated 2 mappers in 'square', "));
     CHECK(watched.reports.size() == (lines ? 3 : 6));
   }
+}
+
+TEST_CASE("Each mapper has a line of its own, whatever its name") {
+  const Folder folder;
+  const std::string file = folder / "names.json";
+  std::ofstream{file} << R"({"name": "names", "walls": [[[0, 0], [9, 0], [9, 3], [0, 3], [0, 0]]], "robots": [
+    {"name": "A/B", "model": "avr", "at": [1, 1], "heading": 0}, {"name": "A_B", "model": "avr", "at": [3, 1], "heading": 0},
+    {"name": "A%2FB", "model": "avr", "at": [5, 1], "heading": 0}, {"name": "..", "model": "avr", "at": [7, 1], "heading": 0},
+    {"name": "A_B.lock", "model": "avr", "at": [7, 2], "heading": 0}]})";
+  std::set<std::string> names;
+  sim::Shell shell{[&] {
+                     for (const auto& entry : std::filesystem::directory_iterator{folder / "ocm/line"})
+                       names.insert(entry.path().filename().string());
+                     return true;
+                   },
+                   [](std::string_view) {}};
+  sim::MapperOptions options;
+  options.world = file;
+  options.lines = true;
+  const Ending ending = sim::serve_mappers(options, shell);
+  for (const auto& failure : ending.failures) UNSCOPED_INFO(failure.what);
+  CHECK(ending.well());
+  for (const char* name : {"A%2FB", "A_B", "A%252FB", "%2E.", "A_B%2Elock"}) CHECK(names.count(name) == 1);
 }
 
 TEST_CASE("Whatever is simulated can be watched at each turn") {
