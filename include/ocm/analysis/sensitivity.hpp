@@ -75,7 +75,8 @@ constexpr Edge edge_of(std::span<Task> tasks, std::size_t index, std::int64_t Ta
                                            const Processor& processor = {}, Limits limits = {}) noexcept {
   if (index >= tasks.size() || first_invalid(tasks) != no_index) return {false, 0, first_invalid(tasks)};
   const std::int64_t due = std::min(tasks[index].due(), longest_looked_for);
-  return detail::edge_of(tasks, index, &Task::cost, 1, due, processor, limits);
+  const std::int64_t least = tasks[index].waits + 1;  // what it waits is a part of it
+  return detail::edge_of(tasks, index, &Task::cost, least, std::max(due, least), processor, limits);
 }
 /// The greatest B.
 [[nodiscard]] constexpr Edge greatest_blocking(std::span<Task> tasks, std::size_t index,

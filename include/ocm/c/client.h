@@ -263,7 +263,8 @@ static inline int ocm_client_open_simulated_(ocm_client* client, const char* pat
   client->socket = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
   if (client->socket < 0) return ocm_client_fail_(client, "no socket", strerror(errno));
   if (connect(client->socket, (const struct sockaddr*)&address, sizeof address) < 0)
-    return ocm_client_fail_(client, "no simulator is running", strerror(errno));
+    return ocm_client_fail_(client, errno == EAGAIN ? "the simulator takes no program now: try again" : "no simulator is running",
+                            strerror(errno));
   if (getsockopt(client->socket, SOL_SOCKET, SO_PEERCRED, &peer, &peer_size) < 0 || peer.uid != geteuid())
     return ocm_client_fail_(client, "the simulator belongs to another user", "");
   memset(hello, 0, sizeof hello);
@@ -373,7 +374,7 @@ static inline int ocm_client_send(ocm_client* client, uint32_t id, uint8_t dlc, 
       ++client->sent;
       return 1;
     }
-    if (errno != EAGAIN && errno != ENOBUFS && errno != ENETDOWN && errno != EINTR)
+    if (errno != EAGAIN && errno != ENOBUFS && errno != ENOMEM && errno != ENETDOWN && errno != EINTR)
       return ocm_client_fail_(client, "the CAN interface is gone", strerror(errno));
     if (ocm_client_now_ms_() >= until_ms) return 0;
     poll(NULL, 0, 1);  // nothing tells when a transmit queue has room

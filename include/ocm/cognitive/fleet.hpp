@@ -358,7 +358,8 @@ class Fleet {
     const mapper::link::LinkQuality& quality = ears_.ear(index).quality();
     const float far = distance_m(place(robot.pose()), options_.central);
     const bool before = robot.advice != Advice::stay;
-    const float limit = options_.range_m * (before ? options_.near_range * 0.9F : options_.near_range);
+    const bool was_far = robot.advice == Advice::far_away;  // a bad link is no reason to call it too far
+    const float limit = options_.range_m * (was_far ? options_.near_range * 0.9F : options_.near_range);
     if (far > limit)
       robot.advice = Advice::far_away;
     else if (quality.below(before ? options_.good_from : options_.bad_below))

@@ -50,7 +50,8 @@ class Mapping {
   /// To be called with each sentence, as Server::feed does.
   void heard(std::size_t robot, mapper::link::Kind kind) {
     if (robot >= Fleet::most_robots || !takes_part(robot)) return;
-    if (kind == mapper::link::Kind::handshake) {
+    // A robot has begun again; an answer to another program changes nothing.
+    if (kind == mapper::link::Kind::handshake && !fleet_->robot(robot).update) {
       tracks_[robot] = Track{.held = tracks_[robot].held};
       drawing_.restart(robot);
       explorer_.forget(static_cast<std::uint8_t>(robot));

@@ -283,8 +283,8 @@ class Controller {
     }
     if constexpr (has_refusal) {
       constexpr std::size_t sensor = Board::sensors::template index<typename Board::refusal>;
-      if (!active(sensor))  // who publishes it sees it at the next release
-        dispatcher_.once(first_sensor + sensor, level_of(Board::refusal::priority), port().now());
+      // Who publishes it sees it at the next release; he may begin while this context waits.
+      dispatcher_.once_unless_active(first_sensor + sensor, level_of(Board::refusal::priority), port().now());
     }
   }
 

@@ -287,6 +287,7 @@ class FrameParser {
   if (!begins(before_id)) return false;
   at += before_id.size();
   std::uint32_t id = 0;
+  if (at == end || !base::is_digit(*at)) return false;
   for (int digits = 0; digits < 4 && at != end && base::is_digit(*at); ++digits, ++at)
     id = id * 10 + static_cast<std::uint32_t>(*at - '0');
   if (id > can::max_base_id || !begins(before_data)) return false;

@@ -418,6 +418,7 @@ class PcapngWriter final : public Writer {
     out.little(std::uint16_t{0});
     out.little(std::int64_t{-1});  // the section's length is not known yet
     add_option(out, pcapng::option::application, "ocm");
+    out.little(std::uint32_t{0});  // the end of the options
     close(out, start);
   }
 

@@ -87,7 +87,7 @@ class RecentLoad {
 
   void add(base::Time time, unsigned bits) noexcept {
     const std::int64_t slot = slot_of(time);
-    if (!any_ || slot < newest_ - slots) restart(slot);  // the second: a clock was set back
+    if (!any_ || slot <= newest_ - slots) restart(slot);  // the second: a clock was set back
     if (slot > newest_) advance(slot);
     bits_[index(std::min(slot, newest_))] += bits;
   }

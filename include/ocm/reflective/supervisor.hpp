@@ -241,7 +241,8 @@ class Supervisor {
       if (condition.topic != event.topic) continue;
       ConditionState& state = states_[c];
       if (condition.watched == Watched::field) {
-        take_field(c, event);
+        // A sample that another program has asked for would count, and never grow old.
+        if (state.watching) take_field(c, event);
       } else if (condition.watched == Watched::age || condition.watched == Watched::gap) {
         if (!state.watching) continue;
         const base::Time later = std::max(state.last, at);

@@ -65,6 +65,13 @@ class Dispatcher {
     publisher_.once(stream, level, at);
     attend(stream);
   }
+  /// The same, unless the stream publishes: its next release is as good, and none of them ends.
+  void once_unless_active(std::size_t stream, Level level, base::Time when) noexcept {
+    [[maybe_unused]] const auto guard = port_->lock();
+    if (publisher_.active(stream)) return;
+    publisher_.once(stream, level, when);
+    attend(stream);
+  }
   /// No release is taken after this.
   void stop(std::size_t stream) noexcept {
     [[maybe_unused]] const auto guard = port_->lock();

@@ -68,8 +68,9 @@ class CompassCalibration {
     least_ = {field.x < least_.x ? field.x : least_.x, field.y < least_.y ? field.y : least_.y};
     most_ = {field.x > most_.x ? field.x : most_.x, field.y > most_.y ? field.y : most_.y};
     Part& part = parts_[part_of(turned_rad_)];
+    if (part.count == UINT16_MAX) return true;  // its mean is known well enough
     part.sum = {part.sum.x + field.x, part.sum.y + field.y};
-    part.count += part.count == UINT16_MAX ? 0U : 1U;
+    ++part.count;
     return true;
   }
 

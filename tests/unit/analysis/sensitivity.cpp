@@ -39,6 +39,21 @@ static_assert(edge(greatest_cost, invalid, 0) == Edge{false, 0, 2} &&
 static_assert(edge(shortest_period, in_order(std::array{Task{1, 9}, Task{1, 0}, Task{1, 9}}), 0) ==
               Edge{false, 0, 1});
 
+// A task that waits needs more than it waits, and may grow to its deadline.
+constexpr auto waiting = [] {
+  auto set = rate_monotonic(std::array{Task{32, 80}, Task{5, 40}, Task{4, 16}});
+  set[2].waits = 3;
+  return set;
+}();
+static_assert(edge(greatest_cost, waiting, 2).exists && edge(greatest_cost, waiting, 2).value > 4);
+constexpr Edge alone(Task task) {
+  std::array tasks{task};
+  return greatest_cost(tasks, 0);
+}
+static_assert(alone(Task{.cost = 10, .period = 20, .waits = 6}) == Edge{true, 20, no_index});
+static_assert(alone(Task{.cost = 19, .period = 20, .waits = 18}) == Edge{true, 20, no_index});
+static_assert(!alone(Task{.cost = 30, .period = 20, .waits = 25}).exists);
+
 // At U = 1 nothing can grow.
 constexpr auto set_c = rate_monotonic(std::array{Task{40, 80}, Task{10, 40}, Task{5, 20}});
 static_assert(critical_scale(set_c) == Edge{true, 1'000'000, 0});

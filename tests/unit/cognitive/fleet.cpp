@@ -333,6 +333,20 @@ TEST_CASE("fleet: the log of listing 15.1 calls the robot back") {
   CHECK(fleet.call_back(0) == Advice::stay);
 }
 
+TEST_CASE("fleet: a bad link is called that, however near the range it was called for") {
+  FleetOptions options;
+  options.range_m = 8.0F;
+  options.central = {1.0F, 0.0F};
+  Fleet fleet{options};
+  fleet.linked(0, "AVR", second);
+  fleet.feed(ocm::test::listing_15_1, second, [](std::size_t, Kind) {});
+  REQUIRE(fleet.call_back(0) == Advice::bad_link);
+  for (int i = 0; i < 3; ++i) {  // 6.8 m away: within 7.2, and not within 6.48
+    fleet.feed("[0]:AVR:{U,780,0,0,0,0,0,0,0}\n", second);
+    CHECK(fleet.call_back(0) == Advice::bad_link);
+  }
+}
+
 TEST_CASE("fleet: a pose near the range calls back, until it is well inside") {
   FleetOptions options;
   options.central = {1.0F, 0.0F};

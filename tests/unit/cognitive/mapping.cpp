@@ -205,6 +205,20 @@ TEST_CASE("mapping: who is called back does not finish its piece first") {
   CHECK_FALSE(expedition.fleet.take());  // once
 }
 
+TEST_CASE("mapping: a handshake that answers another program's question changes nothing") {
+  Expedition expedition{labyrinth(), {PerfectRobot{{0.4F, 0.4F, 0.0F}}}};
+  const std::string handshake = "{H,15,20,-4,6,0,90,180,270,2000,0}\n";
+  expedition.say(0, handshake);
+  for (int i = 0; i < 200 && !expedition.mapping.explorer().goal(0); ++i) expedition.step();
+  REQUIRE(expedition.mapping.explorer().goal(0));
+  REQUIRE(expedition.fleet.ask_who(0, expedition.now));
+  expedition.say(0, handshake);
+  CHECK(expedition.mapping.explorer().goal(0));
+  expedition.now += 10s;
+  expedition.say(0, handshake);  // unasked: it has begun again
+  CHECK_FALSE(expedition.mapping.explorer().goal(0));
+}
+
 TEST_CASE("mapping: a robot that is held is left alone, and the others go on") {
   Expedition expedition{labyrinth(), {PerfectRobot{{0.4F, 0.4F, 0.0F}}, PerfectRobot{{2.0F, 1.4F, 3.0F}}}};
   for (int i = 0; i < 50; ++i) expedition.step();

@@ -83,6 +83,7 @@ TEST_CASE("mcap_frame: in a short way nothing is read that cannot be") {
   const std::string_view usual = R"({"id":1544,"data":"00D2000F11223344","direction":"received"})";
   Entry entry;
   REQUIRE(mcap::parse_usual(usual, entry));
+  CHECK_FALSE(mcap::parse_usual(R"({"id":,"data":"00D2000F11223344","direction":"received"})", entry));
   CHECK(entry.id == 1544);
   for (std::size_t size = 0; size < usual.size(); ++size) {
     const std::string cut{usual.substr(0, size)};

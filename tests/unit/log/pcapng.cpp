@@ -83,10 +83,11 @@ TEST_CASE("pcapng: what is written, byte by byte") {
   const std::vector<Recorded> recorded{{5, 2}};
   const std::string file = log::testing::write_all(writer, {{entry}}, interfaces, recorded);
   // shb_userappl "ocm"; statistics at the time of the last packet: isb_ifrecv 5, isb_ifdrop 2.
-  CHECK(file == bytes("0A0D0D0A 24000000 4D3C2B1A 0100 0000 FFFFFFFFFFFFFFFF 0400 0300 6F636D00 24000000") +
-                    little_can7 + little_packet +
-                    bytes("05000000 34000000 00000000 00000000 02CA9A3B"
-                          "0400 0800 0500000000000000 0500 0800 0200000000000000 0000 0000 34000000"));
+  CHECK(file ==
+        bytes("0A0D0D0A 28000000 4D3C2B1A 0100 0000 FFFFFFFFFFFFFFFF 0400 0300 6F636D00 0000 0000 28000000") +
+            little_can7 + little_packet +
+            bytes("05000000 34000000 00000000 00000000 02CA9A3B"
+                  "0400 0800 0500000000000000 0500 0800 0200000000000000 0000 0000 34000000"));
   CHECK_FALSE(writer.lost().any());
   const auto log = read_all<PcapngReader>(file);
   REQUIRE(log.recorded.size() == 1);

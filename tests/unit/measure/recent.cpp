@@ -124,6 +124,9 @@ TEST_CASE("recent load: a clock that is set back a little changes nothing, far b
   load.add(at(10s), 100);
   load.add(at(9'950ms), 10);
   CHECK(load.bits(at(10'100ms)) == 110);
+  load.add(at(8'950ms), 7);  // a tenth more than the second
+  CHECK(load.bits(at(9s)) == 7);
+  CHECK(load.bits(at(10'100ms)) == 0);
   load.add(at(5s), 7);
   CHECK(load.bits(at(5'100ms)) == 7);
   CHECK(load.bits(at(10'100ms)) == 0);

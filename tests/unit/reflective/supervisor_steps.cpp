@@ -272,6 +272,20 @@ TEST_CASE("supervisor steps: samples are counted in windows that follow one anot
 }
 
 TEST_CASE(
+    "supervisor steps: a sample of what is not streamed here, which another program asked for, says "
+    "nothing") {
+  Robot robot;
+  const std::vector<Stream> none_of_it{{pair, 100ms}};
+  robot.configurations[0].streams = none_of_it;
+  robot.conditions = {{.topic = real, .limit = 9}, {.topic = pair, .limit = 9}};
+  robot.start();
+  robot.sample(10ms, real, real_sample(10, 0.0F));
+  CHECK(robot.known() == "??");
+  robot.sample(20ms, pair, Bytes{10, 0, 0, 0, 0, 0, 0, 0, 0, 0});
+  CHECK(robot.known() == "?y");
+}
+
+TEST_CASE(
     "supervisor steps: what was known of a stream that goes on stays known, of one asked for again it does "
     "not") {
   Robot robot;

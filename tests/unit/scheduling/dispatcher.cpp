@@ -157,6 +157,21 @@ TEST_CASE("a stop from within the job, and a single release from within it") {
   CHECK(setup.releases[2].scheduled == at(30ms));
 }
 
+TEST_CASE("a single release that is asked for beside a stream leaves the stream as it is") {
+  Setup setup;
+  setup.dispatcher.start(2, 20ms, Level::medium, at(0ms));
+  setup.pass_to(0ms);
+  setup.dispatcher.once_unless_active(2, Level::urgent, at(5ms));
+  setup.pass_to(40ms);
+  CHECK(setup.releases.size() == 3);  // 0, 20, 40
+  setup.dispatcher.stop(2);
+  setup.dispatcher.once_unless_active(2, Level::urgent, at(45ms));
+  setup.pass_to(80ms);
+  REQUIRE(setup.releases.size() == 4);
+  CHECK(setup.releases[3].scheduled == at(45ms));
+  CHECK(setup.port.bad == 0);
+}
+
 TEST_CASE("an alarm is a single release that lies ahead, and can be moved both ways") {
   Setup setup;
   setup.dispatcher.once(3, Level::urgent, at(50ms));

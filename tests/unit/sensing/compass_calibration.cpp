@@ -46,6 +46,20 @@ TEST_CASE("once around gives the middle of the circle", "[sensing]") {
   }
 }
 
+TEST_CASE("a robot that stands for long before it turns has no other offset for it", "[sensing]") {
+  CompassCalibration calibration;
+  for (int i = 0; i < 200'000; ++i) calibration.add({80.0F, -20.0F}, 0.0F);
+  for (int i = 0; i <= 360; i += 2) {
+    const float angle = radians(static_cast<float>(i));
+    calibration.add({30.0F + 50.0F * std::cos(angle), -20.0F + 50.0F * std::sin(angle)},
+                    radians(i == 0 ? 0.0F : 2.0F));
+  }
+  const auto found = calibration.fit();
+  REQUIRE(found.ok());
+  CHECK(near(found->offset.x, 30.0F, 1.0F));
+  CHECK(near(found->offset.y, -20.0F, 1.0F));
+}
+
 TEST_CASE("a turn that was not all around, or without readings, has no fit", "[sensing]") {
   CHECK(CompassCalibration{}.fit().error == Error::not_sampled);
   CHECK(turned(350, 50.0F, 50.0F).fit().error == Error::not_sampled);
