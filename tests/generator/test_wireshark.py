@@ -19,8 +19,10 @@ def pcap(frames):
 
 class Wireshark(Case):
     def tshark(self, robot, frames, *options):
-        script, capture = self.folder / f"{robot}.lua", self.folder / "capture.pcap"
-        generate(SPECS[robot], "--to", "wireshark", "-o", script)
+        """`robot`: of SPECS, or the path of another."""
+        script, capture = self.folder / "robot.lua", self.folder / "capture.pcap"
+        script.unlink(missing_ok=True)
+        generate(SPECS.get(robot, robot), "--to", "wireshark", "-o", script)
         capture.write_bytes(pcap(frames))
         done = subprocess.run(["tshark", "-X", f"lua_script:{script}", "-r", capture, *options], capture_output=True,
                               encoding="utf-8", timeout=120, check=True,
@@ -66,6 +68,16 @@ class Wireshark(Case):
                      "floor_proximity, request", "Mode: once (2)", "Period in s: 0.05", "x: 1.085 deg/s", "z: -0.07 deg/s",
                      "minutes: 65535 min (unknown)", "charging: True", "power: -930 mW"):
             self.assertIn(part, text.replace("[", "").replace("]", ""))
+
+    def test_flags_of_a_wide_field(self):
+        spec = self.folder / "wide.json"
+        for kind in ("u64", "i64"):
+            spec.write_text(json.dumps({"robot": "wide", "messages": [{"name": "Wide", "id": "0x123", "fields": [
+                {"name": "state", "byte": 0, "type": kind, "flags": {"low": 0, "middle": 33, "top": 63}}]}]}))
+            for bits in (1 << 33, 1 | 1 << 63, 0, (1 << 64) - 1):
+                text = self.tshark(spec, [(0x123, bits.to_bytes(8, "little"))], "-V")
+                for bit, name in ((0, "low"), (33, "middle"), (63, "top")):
+                    self.assertIn(f"{name}: {bool(bits >> bit & 1)}", text, (kind, hex(bits)))
 
     def test_wrong_lengths_and_bad_requests_are_expert_info(self):
         frames = [(0x608, b"\0" * 5), (0x205, b"\x01\x01"), (0x205, b"\x03"), (0x205, bytes.fromhex("01000000")),

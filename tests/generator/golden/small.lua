@@ -121,7 +121,7 @@ local function add_field(tvb, tree, field)
     text = field.name .. " " .. name
   end
   for _, flag in ipairs(field.bits) do
-    local set = not wide and math.floor(raw / 2 ^ flag.bit) % 2 == 1
+    local set = (wide and raw:rshift(flag.bit):band(1):tonumber() or math.floor(raw / 2 ^ flag.bit) % 2) == 1
     if set then item:append_text(" " .. flag.name) end
     item:add(flag.proto, range, set)
   end
