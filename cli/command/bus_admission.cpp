@@ -46,7 +46,7 @@ std::optional<Stream> stream_of(const client::Command& command) {
 
 void listen(transport::Bus& bus, Traffic& traffic, RefusalWatch& refusals, base::Duration duration) {
   const auto begin = Live::Clock::now();
-  Live{bus}.receive_or_leave(begin + duration, [&](const can::Received& received) {
+  Live{bus}.receive_or_leave(time_after(begin, duration), [&](const can::Received& received) {
     traffic.take(received);
     refusals.take(received);
     return true;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <csignal>
 #include <string_view>
 #include <tuple>
 #include <utility>
@@ -183,7 +184,7 @@ int drive_by_keys(Session& session, const KeyDriveOptions& options) {
     timeline.expect_no_other();
     quit = drive.run(keys, timeline);
     timeline.rest();
-    drive.show_end();
+    if (quit || interrupted() == SIGINT) drive.show_end();  // else the terminal may be gone
   }
   const bool fine = timeline.finish();
   return exit_code_after_interrupt(quit && fine ? exit_success : exit_failure);

@@ -39,7 +39,8 @@ Timeline::Timeline(transport::Bus& bus, const protocol::Catalogue& catalogue, st
       presence_(catalogue, verb_, confirm) {}
 
 Timeline::~Timeline() {
-  if (held_ && !rest_after_all() && outgoing_.matters()) remark(fmt::format("{}: {}", verb_, still_moving));
+  if (held_ && !rest_after_all() && outgoing_.matters() && !outgoing_.robot_is_gone())
+    remark(fmt::format("{}: {}", verb_, still_moving));
 }
 
 bool Timeline::listen_first(base::Duration duration) {

@@ -36,8 +36,8 @@ void Traffic::take(const can::Received& received) {
   if (is_new) {
     heard.first = received.time;
     heard.frame = received.frame;
-    if (reception.meaning != Meaning::wrong_dlc) heard.ref = reception.frame;
   }
+  if (!heard.ref && reception.meaning != Meaning::wrong_dlc) heard.ref = reception.frame;
   // Of an identifier that comes in several lengths the longest counts.
   if (received.frame.dlc > heard.frame.dlc) heard.frame = received.frame;
   heard.last = received.time;

@@ -4,6 +4,8 @@
 #include <optional>
 #include <string_view>
 
+#include <fmt/format.h>
+
 #include "ocm/transport/interfaces.hpp"
 #include "ocm/transport/virtual_bus.hpp"
 
@@ -160,8 +162,7 @@ class Completer {
       add("all", "motors to zero, then every sensor");
       return topics(Of::all);
     }
-    if (verb == "set" || verb == "encode")
-      return index == 0 ? topics(verb == "set" ? Of::settable : Of::all) : fields(line.positionals[0]);
+    if (verb == "set") return index == 0 ? topics(Of::settable) : fields(line.positionals[0]);
     if (verb == "led") return index == 0 ? lights() : index == 1 ? colours() : void();
     if (verb == "drive") return add("stop");
     std::size_t number = 0;

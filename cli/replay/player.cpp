@@ -112,6 +112,7 @@ bool Player::send(const log::Entry& entry, const log::Interfaces& interfaces) {
     ++played_.no_route;
     return true;
   }
+  for (Outlet& each : outlets_) each.expect_motion_left();  // also where frames leave no time between them
   auto& bus = outlets_[*outlet];
   if (options_.at_once) {
     count(bus.send(entry, base::never));

@@ -42,6 +42,7 @@ StandIn::Answer StandIn::take(const can::Frame& frame, base::Time now) {
   const auto request = protocol::decode_request(frame);
   if (!request) return Answer::refused;
   const std::size_t stream = index(*topic);
+  if (stream >= most_topics) return Answer::silent;
   if (request->mode == protocol::Mode::stop) {
     publisher_->stop(stream);
     return Answer::accepted;

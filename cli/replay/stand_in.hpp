@@ -56,7 +56,7 @@ class StandIn {
     std::vector<can::Payload> payloads;  ///< sample after sample
     std::size_t next = 0;
   };
-  static constexpr std::size_t most_topics = 256;  ///< what an identifier can tell apart
+  static constexpr std::size_t most_topics = 256;  ///< of a spec are answered: its first
 
   [[nodiscard]] std::size_t index(const protocol::Topic& topic) const {
     return static_cast<std::size_t>(&topic - catalogue_->topics.data());

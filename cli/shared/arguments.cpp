@@ -14,6 +14,7 @@
 #include "cli/shared/folding.hpp"
 #include "cli/shared/messages.hpp"
 #include "cli/shared/misuse.hpp"
+#include "cli/shared/option_value.hpp"
 #include "cli/shared/terminal.hpp"
 #include "cli/shared/usage.hpp"
 #include "cli/words/suggestion.hpp"
@@ -119,6 +120,12 @@ CLI::Option* add_check(CLI::Option* option, std::string_view description,
 
 template <class Number>
 CLI::Option* only_numbers(CLI::Option* option, std::string_view what, std::string_view remedy) {
+  if (std::is_integral_v<Number>)  // CLI11 would read 010 as C++ does: 8
+    option->transform(CLI::Validator{[](std::string& text) {
+                                       text = without_leading_zeros(text);
+                                       return std::string{};
+                                     },
+                                     ""});
   return add_check(option, "", [what, remedy](const std::string& text) {
     Number number{};
     if (CLI::detail::lexical_cast(text, number)) return std::string{};

@@ -2,26 +2,23 @@
 /// picture needs besides is in cli/top/curses.hpp.
 #pragma once
 
+#include <algorithm>
 #include <cerrno>
 #include <cstddef>
+#include <cstring>
 #include <optional>
+#include <poll.h>
 #include <string_view>
 #include <termios.h>
 #include <unistd.h>
+#include <utility>
 
 namespace ocm::cli {
 
 /// As long as it lives. Signals of the terminal (Ctrl-C, Ctrl-Z) stay signals.
 class KeyInput {
  public:
-  KeyInput() noexcept {
-    if (::tcgetattr(STDIN_FILENO, &before_) != 0) return;
-    termios now = before_;
-    now.c_lflag &= ~tcflag_t{ICANON | ECHO};
-    now.c_cc[VMIN] = 0;
-    now.c_cc[VTIME] = 0;
-    is_terminal_ = ::tcsetattr(STDIN_FILENO, TCSANOW, &now) == 0;
-  }
+  KeyInput() noexcept { is_terminal_ = ::tcgetattr(STDIN_FILENO, &before_) == 0 && take_keys(); }
   ~KeyInput() {
     if (is_terminal_) ::tcsetattr(STDIN_FILENO, TCSANOW, &before_);
   }
@@ -29,19 +26,59 @@ class KeyInput {
   KeyInput& operator=(const KeyInput&) = delete;
 
   [[nodiscard]] bool is_terminal() const noexcept { return is_terminal_; }
-  /// What was pressed since it was asked last, until it is asked again; nothing: the terminal is gone.
+  /// What was pressed since it was asked last, until it is asked again; nothing: the terminal is gone. The
+  /// beginning of a sequence of a key, such as an arrow's, is kept for the next time, when its end may have
+  /// come.
   [[nodiscard]] std::optional<std::string_view> read() noexcept {
-    const ssize_t count = ::read(STDIN_FILENO, buffer_, sizeof buffer_);
-    if (count > 0) return std::string_view{buffer_, static_cast<std::size_t>(count)};
-    if (count < 0)
-      return errno == EAGAIN || errno == EINTR ? std::optional{std::string_view{}} : std::nullopt;
-    return std::string_view{};  // no key, with VMIN 0; a terminal that is closed says EIO, or sends SIGHUP
+    std::memmove(buffer_, buffer_ + given_, kept_);
+    given_ = std::exchange(kept_, 0);
+    if (!has_keys()) return std::string_view{buffer_, given_};
+    const ssize_t count = ::read(STDIN_FILENO, buffer_ + given_, sizeof buffer_ - given_);
+    if (count < 0 && errno != EAGAIN && errno != EINTR) return std::nullopt;  // closed: EIO, or SIGHUP
+    if (count > 0) {
+      given_ += static_cast<std::size_t>(count);
+      kept_ = begun({buffer_, given_});
+      given_ -= kept_;
+    }
+    return std::string_view{buffer_, given_};
   }
 
  private:
+  [[nodiscard]] bool take_keys() const noexcept {
+    termios now = before_;
+    now.c_lflag &= ~tcflag_t{ICANON | ECHO};
+    now.c_cc[VMIN] = 0;
+    now.c_cc[VTIME] = 0;
+    return ::tcsetattr(STDIN_FILENO, TCSANOW, &now) == 0;
+  }
+  /// Whether `read` would not wait. A shell gives a program that was stopped the terminal back as it is for
+  /// the shell, line by line.
+  [[nodiscard]] bool has_keys() const noexcept {
+    termios now{};
+    const pid_t owner =
+        ::tcgetpgrp(STDIN_FILENO);  // the shell's while this runs in the background; -1: it has none
+    if (::tcgetattr(STDIN_FILENO, &now) == 0 && (now.c_lflag & ICANON) != 0 &&
+        (owner == -1 || owner == ::getpgrp()))
+      (void)take_keys();
+    pollfd input{STDIN_FILENO, POLLIN, 0};
+    return ::poll(&input, 1, 0) != 0;
+  }
+  /// How many bytes at the end are the beginning of a sequence.
+  [[nodiscard]] static std::size_t begun(std::string_view text) noexcept {
+    const std::size_t at = text.rfind('\x1b');
+    if (at == text.npos) return 0;
+    const std::string_view sequence = text.substr(at);
+    if (sequence.size() > 1 && sequence[1] != '[' && sequence[1] != 'O') return 0;
+    for (const char c : sequence.substr(std::min<std::size_t>(sequence.size(), 2)))
+      if (c >= '@' && c <= '~') return 0;
+    return sequence.size();
+  }
+
   termios before_{};
   bool is_terminal_ = false;
   char buffer_[64] = {};
+  std::size_t given_ = 0;  ///< bytes
+  std::size_t kept_ = 0;   ///< behind those
 };
 
 }  // namespace ocm::cli

@@ -44,9 +44,24 @@ void Live::look_beside() {
   beside_.serve();
 }
 
+/// Among frames that come without end: what it has worked for beyond `until`. A time for which the program
+/// was stopped is none of that; what came meanwhile is taken.
+bool Live::is_overdue(Clock::time_point until) {
+  constexpr unsigned between_looks = 64;
+  constexpr std::chrono::milliseconds longest_work{100};
+  constexpr std::chrono::seconds longest_overrun{1};
+  if (!idle_ || ++frames_ % between_looks != 0) return false;
+  const auto now = Clock::now();
+  const auto worked = std::min<Clock::duration>(now - looked_, longest_work);
+  looked_ = now;
+  if (now >= until) overrun_ += worked;
+  return overrun_ >= longest_overrun;
+}
+
 template <class Ask, class GiveTo>
 Over Live::receive_next(Clock::time_point until, const Ask& ask, const GiveTo& take) {
   bool all_taken = !idle_;
+  overrun_ = {};
   while (interrupted() == 0) {
     Clock::duration left{0};
     if (all_taken) {
@@ -60,6 +75,7 @@ Over Live::receive_next(Clock::time_point until, const Ask& ask, const GiveTo& t
     if (received) {
       all_taken = !idle_;
       if (!take(*received)) return Over::enough;
+      if (is_overdue(until)) return Over::time;
       if (beside_.descriptor >= 0) look_beside();
       continue;
     }

@@ -45,7 +45,8 @@ class Live {
   using Take = std::function<bool(const can::Received&)>;
 
   /// `bus` must outlive it. `idle`, where there is one, is called before each wait, when no frame is left to
-  /// take; the time is looked at then only, so that nothing of what came in time is left.
+  /// take; the time is looked at then, so that nothing of what came in time is left. On a bus that always has
+  /// a frame the time is passed by a second.
   explicit Live(transport::Bus& bus, std::function<void()> idle = {}, Beside beside = {})
       : bus_(&bus), idle_(std::move(idle)), beside_(std::move(beside)) {}
 
@@ -68,11 +69,15 @@ class Live {
   void wait_for_both(Clock::duration longest);
   /// Between two frames: serves what is beside where it has waited from one look to the next.
   void look_beside();
+  [[nodiscard]] bool is_overdue(Clock::time_point until);
 
   transport::Bus* bus_;
   std::function<void()> idle_;
   Beside beside_;
   Clock::time_point looked_beside_{};
+  Clock::time_point looked_{};  ///< among frames
+  Clock::duration overrun_{};
+  unsigned frames_ = 0;
   bool beside_waits_ = false;
   StateWatch state_;
 };

@@ -1,5 +1,6 @@
 #include "cli/shared/option_value.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <utility>
@@ -44,12 +45,18 @@ Accepted accepted_words(std::vector<std::string> words) {
   return {ValueKind::text, false, std::move(expected), std::move(words), {}};
 }
 
+std::string without_leading_zeros(const std::string& text) {
+  if (text.find_first_not_of("0123456789") != std::string::npos) return text;
+  const auto first = std::min(text.find_first_not_of('0'), text.size());
+  return first == text.size() && first != 0 ? "0" : text.substr(first);
+}
+
 Accepted accepted_whole(std::uint64_t least, std::uint64_t most, std::string expected) {
   const auto holds = [least, most](const std::string& text) {
     if (text.empty() || text.front() == '-') return false;
     char* end = nullptr;
     errno = 0;
-    const std::uint64_t number = std::strtoull(text.c_str(), &end, 0);
+    const std::uint64_t number = std::strtoull(without_leading_zeros(text).c_str(), &end, 0);
     return errno == 0 && *end == '\0' && number >= least && number <= most;
   };
   return {ValueKind::number, false, std::move(expected), {}, holds};

@@ -34,6 +34,9 @@ struct Refusal {
   std::string remedy;
 };
 
+/// "10" of "010", which would else be read as octal, as in C++. Anything but digits stays as it is.
+[[nodiscard]] std::string without_leading_zeros(const std::string& text);
+
 /// One of a list of words.
 [[nodiscard]] Accepted accepted_words(std::vector<std::string> words);
 /// A number within bounds, which `expected` says in words.

@@ -130,10 +130,13 @@ const protocol::Catalogue& Session::catalogue_on_bus(bool opens_bus) {
 const protocol::Catalogue& Session::catalogue_on(const std::string& bus) {
   const protocol::Catalogue& all = catalogue();
   if (!all.has_buses()) return all;
-  auto& there = specs_on_[bus];
+  const std::string interface = interface_of(bus);
+  auto& there = specs_on_[interface];
   if (there == nullptr) {
     spec::Model model = spec().model();
-    const auto is_elsewhere = [&bus](const auto& object) { return !object.bus.empty() && object.bus != bus; };
+    const auto is_elsewhere = [&](const auto& object) {
+      return !object.bus.empty() && object.bus != interface;
+    };
     std::erase_if(model.topics, is_elsewhere);
     std::erase_if(model.messages, is_elsewhere);
     there = std::make_unique<spec::Spec>(std::move(model));
@@ -164,7 +167,7 @@ std::string Session::narrow_to_bus(std::string_view verb, const std::string& bus
   const std::string& chosen = bus.empty() ? named.front() : bus;
   spec_files.clear();
   for (const SpecWord& word : words)
-    if (word.interface.empty() || word.interface == chosen) spec_files.push_back(word.file);
+    if (word.interface.empty() || word.interface == interface_of(chosen)) spec_files.push_back(word.file);
   if (spec_files.empty())
     fail({fmt::format("{}: no --spec is for {}, only for {}", verb, chosen, all),
           fmt::format("--spec {}={}, or --bus {}", chosen, words.front().file, named.front())},

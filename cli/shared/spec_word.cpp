@@ -20,6 +20,11 @@ bool can_be_interface(std::string_view name) {
          name.find_first_of(never) == std::string_view::npos;
 }
 
+std::string interface_of(std::string_view bus) {
+  if (parse_bus_name(bus).kind == BusName::Kind::serial) bus = bus.substr(0, bus.rfind('@'));
+  return std::string{bus};
+}
+
 SpecWord parse_spec_word(const std::string& word) {
   const auto equals = word.find('=');
   std::error_code error;
@@ -38,7 +43,7 @@ SpecWord parse_spec_word(const std::string& word) {
           fmt::format("a name of 1 to {} characters, without blanks and '/', such as --spec can0={}",
                       IFNAMSIZ - 1, parts.file)},
          exit_usage);
-  return parts;
+  return {interface_of(parts.interface), parts.file};
 }
 
 }  // namespace ocm::cli

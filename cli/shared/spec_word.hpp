@@ -16,6 +16,10 @@ struct SpecWord {
 /// sim or slcan:/dev/ttyACM0@500k.
 [[nodiscard]] bool can_be_interface(std::string_view name);
 
+/// What frames of a bus of --bus have as their interface: a serial adapter's is its device, whatever its
+/// rates, "slcan:/dev/ttyACM0".
+[[nodiscard]] std::string interface_of(std::string_view bus);
+
 /// A file whose name has a '=' is a file, if there is one. exit_usage through `fail` where the file is
 /// missing or no interface can have the name.
 [[nodiscard]] SpecWord parse_spec_word(const std::string& word);

@@ -330,7 +330,14 @@ void declare_behave(Verb verb, Session& session, int& exit_code) {
                "urgent, high, medium or low, or 0 to 3; default: the topic's own");
   verb.add_flag("--dry-run", options->dry_run, "print the frames in candump notation and send nothing");
   add_no_confirm(verb, options->no_confirm);
-  verb.callback([options, &session, &exit_code] { behave(session, *options, exit_code); });
+  verb.callback([verb, options, &session, &exit_code] {
+    // What a config file has for others is none of theirs.
+    const bool ends = options->which == "none";
+    if (ends && !verb.is_typed("--for")) options->lasting.reset();
+    if (ends && !verb.is_typed("--speed")) options->speed.clear();
+    if (options->which != "home" && !verb.is_typed("--distance")) options->distance.clear();
+    behave(session, *options, exit_code);
+  });
 }
 
 }  // namespace ocm::cli

@@ -147,7 +147,7 @@ std::string in_address(std::string_view name) {
 int show_live(Verb verb, Session& session, const PlotOptions& options, const Words& words,
               const std::vector<plot::Wanted>& wanted) {
   for (const char* option : {"--output", "--size", "--title", "--script", "--from", "--count"})
-    if (verb.count(option) != 0)
+    if (verb.is_typed(option))
       fail({fmt::format("plot: {} with --live", option), "the page has no such thing: drop one of them"},
            exit_usage);
   if (!words.files.empty())
@@ -180,7 +180,7 @@ void run(Verb verb, Session& session, const PlotOptions& options, int& exit_code
     return;
   }
   for (const char* option : {"--port", "--open"})
-    if (verb.count(option) != 0)
+    if (verb.is_typed(option))
       fail({fmt::format("plot: {} is of the page", option), "add --live, or drop it"}, exit_usage);
   const bool terminal = isatty(STDOUT_FILENO) != 0;
   const std::string output = !options.output.empty() ? options.output : terminal ? "plot.svg" : "-";

@@ -128,7 +128,12 @@ std::vector<Route> parse_routes(const std::vector<std::string>& words) {
       fail({fmt::format("--interface {}: not a pair", word),
             "write the log's name and the bus: --interface can0=vcan1"},
            exit_usage);
-    routes.push_back({word.substr(0, sign), word.substr(sign + 1)});
+    const std::string in_log = word.substr(0, sign);
+    if (std::any_of(routes.begin(), routes.end(), [&](const Route& route) { return route.in_log == in_log; }))
+      fail({fmt::format("--interface {}: '{}' has a bus already", word, in_log),
+            "frames of an interface go to one bus: leave one out"},
+           exit_usage);
+    routes.push_back({in_log, word.substr(sign + 1)});
   }
   return routes;
 }
@@ -244,7 +249,7 @@ void play(Session& session, const ReplayOptions& options, int& exit_code) {
   try {
     damaged = play_passes(player, options, catalogue, std::move(log));
     end_what_was_begun(player, player.cut_short() || damaged);
-  } catch (const Exit&) {  // the bus took no more: what was sent is reported all the same
+  } catch (...) {  // the bus took no more, or the memory is full: what was sent is reported all the same
     for (const std::string& otherwise : player.end_after_all()) remark("replay: " + otherwise);
     if (!options.dry_run) summarise(player, false);
     throw;
@@ -394,7 +399,7 @@ void declare_replay(Verb verb, Session& session, int& exit_code) {
     if (loop.count() != 0) options->passes = parse_passes(options->loop);
     if (options->on_command) {
       for (const char* option : {"--interface", "--only", "--loop", "--speed", "--max-gap", "--dry-run"})
-        if (verb.count(option) != 0)
+        if (verb.is_typed(option) || (option == std::string_view{"--dry-run"} && options->dry_run))
           fail({fmt::format("replay: {} with --on-command", option),
                 "leave one out: samples are sent when they are asked for, on the bus of --bus"},
                exit_usage);

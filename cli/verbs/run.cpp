@@ -211,7 +211,7 @@ class ScriptRun {
     bool whole = false;
     try {
       whole = carry_out_steps() && wait_for_end();
-    } catch (const Exit&) {  // the error is said
+    } catch (...) {  // the error is said, or main says it
       if (bus_->state() == transport::BusState::closed) throw;
       end_behaviours();
       if (!behaviours_.all().empty() && timeline_.finish()) remark(behaviours_.names() + " ended");
@@ -304,7 +304,7 @@ void print_frames(const words::Script& script) {
 }
 
 void run(Session& session, const RunOptions& options, int& exit_code) {
-  const auto& catalogue = session.catalogue_on_bus(false);
+  const auto& catalogue = session.catalogue_on_bus(!options.dry_run);
   const auto script = checked(options.file, read_script(options.file), catalogue);
   if (options.dry_run) {
     print_frames(script);

@@ -101,7 +101,7 @@ class Travel {
     try {
       begin(set_point);
       follow();
-    } catch (const Exit&) {  // the error is said
+    } catch (...) {  // the error is said, or main says it
       give_up();
       throw;
     }
@@ -160,7 +160,9 @@ class Travel {
     together_ =
         watch_.is_replaced() && !options_->force && Clock::now() - begun_ < client::listen_before_hold;
     client::Command end;
-    if (!watch_.over() || together_) end.frames.push_back(client::set_point(*topic_, {}, options_->priority));
+    // Samples of before it was heard may have said that it is not active: it may begin after them.
+    const bool is_over = watch_.is_replaced() || (watch_.over() && watch_.was_active());
+    if (!is_over || together_) end.frames.push_back(client::set_point(*topic_, {}, options_->priority));
     if (asked_) end.frames.push_back(protocol::stop(watch_.sensor().id, watch_.sensor().priority));
     timeline_.forgive_a_stop();  // an end is never too late
     timeline_.carry_out_once(end);

@@ -111,9 +111,13 @@ class Behave(Case):
         self.assertRegex(err, "drive: another program commands motors: 101#")
         _, err = self.run_tool("travel", "5cm", code=1)
         self.assertIn("travel: another program commands motors", err)
-        _, err = self.interrupt(behave)
-        self.assertEqual(behave.returncode, 130, err)
-        self.assertTrue(self.standing())
+        for number in (signal.SIGHUP, signal.SIGINT):  # the terminal is closed; Ctrl-C
+            behave.send_signal(number)
+            _, err = behave.communicate(timeout=20)
+            self.assertEqual(behave.returncode, 128 + number, err)
+            self.assertTrue(self.standing())
+            if number == signal.SIGHUP:
+                behave = self.behaving("avoid")
 
     def test_a_set_point_ends_follow(self):
         self.start_sim()

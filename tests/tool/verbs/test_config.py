@@ -36,6 +36,30 @@ class Config(harness.Case):
         self.assertEqual(self.frame(), "005#01840302")
         self.assertEqual(self.run_tool("once", "mag", "--dry-run")[0].strip(), "305#02")
 
+    def test_a_default_for_what_drives_keeps_no_stop_from_being_sent(self):
+        self.write('[drive]\nfor = "2s"\n[behave]\nspeed = "15cm/s"\nfor = "2s"\ndistance = "6cm"\n')
+        for name in ("", "AMIROCTL_FOR"):
+            if name:
+                self.environment[name] = "3s"
+            self.assertEqual(self.run_tool("drive", "stop", "--dry-run")[0].strip(), "201#0000000000000000")
+            self.assertEqual(len(self.run_tool("behave", "none", "--dry-run")[0].splitlines()), 4)
+            self.run_tool("behave", "follow", "--dry-run")
+        _, err = self.run_tool("drive", "stop", "--for", "2s", "--dry-run", code=2)
+        self.assertIn("drive stop takes no velocity and no --for", err)
+        _, err = self.run_tool("behave", "none", "--speed", "5cm/s", code=2)
+        self.assertIn("none takes no --speed", err)
+
+    def test_a_default_for_one_kind_of_plot_or_replay_is_none_for_another(self):
+        log = os.path.join(self.folder, "a.log")
+        with open(log, "w", encoding="ascii") as file:
+            file.write("(1.0) can0 608#FF0000000000\n(2.0) can0 608#000000000000\n")
+        self.write('[plot]\nport = 9000\n[replay]\nspeed = 2\nmax-gap = "1s"\n')
+        self.run_tool("plot", log, "gyro.x", "-o", os.path.join(self.folder, "a.svg"))
+        _, err = self.run_tool("plot", log, "gyro.x", "--port", "9000", code=2)
+        self.assertIn("--port is of the page", err)
+        _, err = self.run_tool("replay", log, "--on-command", code=1)
+        self.assertNotIn("with --on-command", err)
+
     def test_flags_and_spec(self):
         other = os.path.join(harness.SOURCE, "examples", "other-robot", "topics.json")
         self.write(f"spec = '{other}'\n[publish]\ndry-run = true\n")

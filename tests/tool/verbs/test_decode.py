@@ -33,6 +33,10 @@ class Decode(Case):
             file.write(content if isinstance(content, bytes) else content.encode())
         return path
 
+    def test_a_number_with_a_leading_zero_is_decimal(self):
+        for number, count in (("010", 10), ("08", 8), ("0x3", 3)):
+            self.assertEqual(len(self.run_tool("decode", "--json", "-n", number, stdin=LOG)[0].splitlines()), count)
+
     def test_back_to_the_byte(self):
         out, err = self.run_tool("decode", "--json", stdin=LOG)
         self.assertEqual(len(out.splitlines()), 12)

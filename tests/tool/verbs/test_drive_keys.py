@@ -102,6 +102,34 @@ class Keys(harness.Case):
         self.assertLess(rest, released + 0.7)  # 250 ms, on a machine that may be busy
         self.assertEqual(points[-1][1], REST)
 
+    def test_many_keys_at_once(self):
+        # What a slow line has held up: more than one look reads, so that a sequence is cut.
+        process = self.drive()
+        os.write(self.primary, UP * 40)
+        self.shows(b"forward")
+        self.shows(b"rests")
+        os.write(self.primary, LEFT[:1])
+        os.write(self.primary, LEFT[1:])
+        self.shows(b"left")
+        self.assertIsNone(process.poll())
+        os.write(self.primary, b"\x1b")  # the key itself quits
+        points, _ = self.set_points(process)
+        self.assertEqual(points[-1][1], REST)
+
+    def test_the_terminal_is_set_back_while_it_was_stopped(self):
+        # As a shell does behind Ctrl-Z and fg.
+        process = self.drive()
+        process.send_signal(signal.SIGSTOP)
+        termios.tcsetattr(self.secondary, termios.TCSANOW, self.before)
+        process.send_signal(signal.SIGCONT)
+        self.hold(UP, 1)
+        self.shows(b"forward")
+        os.write(self.primary, b" ")
+        self.shows(b"stop")
+        os.write(self.primary, b"q")
+        points, _ = self.set_points(process)
+        self.assertEqual(points[-1][1], REST)
+
     def test_two_directions_and_space(self):
         process = self.drive("20cm/s", "90deg/s")
         os.write(self.primary, b"u")

@@ -268,6 +268,12 @@ class Interfaces(Case):
             self.assertIn(f"amiroctl: {verb[0]}: another program commands motors: 201#50C3000000000000, ", err)
         self.interrupt(drive)
         self.run_tool(*specs, "set", "motors", "x=1cm/s")
+        # A script, too: what is on can1 only is checked with --dry-run alone.
+        with open(self.path("lamp.script"), "w", encoding="ascii") as file:
+            file.write("0s set wheels x=0\n")
+        _, err = self.run_tool(*specs, "run", self.path("lamp.script"), code=2)
+        self.assertIn("wheels", err)
+        self.run_tool(*specs[2:], "run", "--dry-run", self.path("lamp.script"))
 
     def test_words_that_are_no_spec(self):
         car = self.path("car.dbc")
@@ -282,6 +288,16 @@ class Interfaces(Case):
                 self.assertIn(remedy, err)
         self.run_tool("--spec", "interface_of_15=" + car, "list")
         self.run_tool("--spec", "slcan:/dev/ttyACM0@500k=" + car, "list")
+
+    def test_a_serial_adapter_is_one_interface_whatever_its_rates(self):
+        car = self.path("car.dbc")
+        for interface in ("slcan:/dev/ttyACM0", "slcan:/dev/ttyACM0@500k"):
+            specs = ("--spec", f"{interface}={car}", "--spec", "can0=" + self.path("radar.dbc"))
+            for bus in ("slcan:/dev/ttyACM0", "slcan:/dev/ttyACM0@250k"):
+                out, _ = self.run_tool(*specs, "--bus", bus, "set", "Gear", "Step=1", "--dry-run")
+                self.assertEqual(out.strip()[:6], "101#01")
+            self.assertEqual(self.meanings(specs=specs, stdin="(1.0) slcan:/dev/ttyACM0 101#0100000000000000\n"),
+                             [("slcan:/dev/ttyACM0", "Gear")])
 
     def test_a_file_whose_name_has_an_equals_sign(self):
         with open(self.path("a=b.dbc"), "w", encoding="ascii") as file:

@@ -149,9 +149,9 @@ class Set(Case):
         self.assertIn("bus: sim", listener.stderr.readline())
         sender = self.start("--spec", spec, "set", "Parts", "--every", "200ms")
         listener.communicate(timeout=30)
-        sender.send_signal(signal.SIGINT)
+        sender.send_signal(signal.SIGHUP)
         _, err = sender.communicate(timeout=30)
-        self.assertEqual(sender.returncode, 130)
+        self.assertEqual(sender.returncode, 128 + signal.SIGHUP)
         self.assertIn(err.partition("\n")[2], ("set: Parts was not sent to its end\n", ""))  # or behind its last frame
         _, err = self.run_tool("--spec", spec, "set", "Parts", "--every", "100ms", code=2)
         self.assertIn("--every 100ms is shorter than a broadcast of Parts takes", err)

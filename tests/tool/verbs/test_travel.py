@@ -4,6 +4,7 @@ import json
 import os
 import re
 import signal
+import subprocess
 import time
 
 from harness import Case, main, waiting
@@ -71,18 +72,34 @@ class Travel(Case):
         """Returns when the board has driven some of the metre."""
         waiting.until(lambda: 0 < self.sample("behaviour")["behaviour.distance"] < 0.99, "the board travels")
 
-    def test_ctrl_c_ends_it(self):
+    def test_each_signal_ends_it(self):
         self.start_sim()
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT):
+            listener = self.listen("travel", "--timeout", "20s")
+            travel = self.start("travel", "1m")
+            self.assertIn('"A08601000000E803"', listener.stdout.readline())
+            self.travels()
+            travel.send_signal(number)
+            out, err = travel.communicate(timeout=20)
+            self.assertEqual((travel.returncode, out), (128 + number, ""), err)
+            self.assertIn('"0000000000000000"', listener.stdout.readline())
+            sample = self.sample("behaviour")
+            self.assertEqual((sample["behaviour.active"], sample["behaviour.ended"]), (NONE, STOPPED))
+
+    def test_samples_that_say_that_it_is_not_active_are_no_end(self):
+        # Of before the board heard it, or of one that begins late: whatever they say, none is left behind.
+        self.start_sim("--without", "di_wheel_drive")
         listener = self.listen("travel", "--timeout", "20s")
-        travel = self.start("travel", "1m")
-        self.assertIn('"A08601000000E803"', listener.stdout.readline())
-        self.travels()
-        travel.send_signal(signal.SIGINT)
-        out, err = travel.communicate(timeout=20)
-        self.assertEqual((travel.returncode, out), (130, ""), err)
+        others = self.start("send", "--stdin", stdin=subprocess.PIPE)
+        travel = self.start("travel", "1m", "--no-confirm")
+        listener.stdout.readline()
+        for _ in range(10):
+            others.stdin.write("60D#0000000000000000\n")
+            others.stdin.flush()
+        _, err = travel.communicate(timeout=20)
+        self.assertEqual(travel.returncode, 1, err)
+        self.assertIn("di_wheel_drive has not begun it", err)
         self.assertIn('"0000000000000000"', listener.stdout.readline())
-        sample = self.sample("behaviour")
-        self.assertEqual((sample["behaviour.active"], sample["behaviour.ended"]), (NONE, STOPPED))
 
     def test_a_stop_ends_it_and_so_does_a_set_point(self):
         self.start_sim()
