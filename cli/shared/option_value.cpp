@@ -1,6 +1,5 @@
 #include "cli/shared/option_value.hpp"
 
-#include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <utility>
@@ -46,17 +45,19 @@ Accepted accepted_words(std::vector<std::string> words) {
 }
 
 std::string without_leading_zeros(const std::string& text) {
-  if (text.find_first_not_of("0123456789") != std::string::npos) return text;
-  const auto first = std::min(text.find_first_not_of('0'), text.size());
-  return first == text.size() && first != 0 ? "0" : text.substr(first);
+  const std::size_t begin = text.starts_with('+') ? 1 : 0;
+  if (begin == text.size() || text.find_first_not_of("0123456789", begin) != std::string::npos) return text;
+  const auto first = text.find_first_not_of('0', begin);
+  return first == std::string::npos ? "0" : text.substr(first);
 }
 
 Accepted accepted_whole(std::uint64_t least, std::uint64_t most, std::string expected) {
   const auto holds = [least, most](const std::string& text) {
     if (text.empty() || text.front() == '-') return false;
+    const std::string digits = without_leading_zeros(text);
     char* end = nullptr;
     errno = 0;
-    const std::uint64_t number = std::strtoull(without_leading_zeros(text).c_str(), &end, 0);
+    const std::uint64_t number = std::strtoull(digits.c_str(), &end, 0);
     return errno == 0 && *end == '\0' && number >= least && number <= most;
   };
   return {ValueKind::number, false, std::move(expected), {}, holds};

@@ -34,7 +34,7 @@ class Decode(Case):
         return path
 
     def test_a_number_with_a_leading_zero_is_decimal(self):
-        for number, count in (("010", 10), ("08", 8), ("0x3", 3)):
+        for number, count in (("010", 10), ("08", 8), ("0x3", 3), ("+010", 10)):
             self.assertEqual(len(self.run_tool("decode", "--json", "-n", number, stdin=LOG)[0].splitlines()), count)
 
     def test_back_to_the_byte(self):
