@@ -80,7 +80,7 @@ void Switchboard::start_scan() {
     std::vector<RobotLine> found;
     for (const auto& entry : std::filesystem::directory_iterator{options_.folder, error})
       if (entry.path().extension() != ".lock")
-        found.push_back({entry.path().filename().string(), entry.path().string()});
+        found.push_back({transport::robot_of_line(entry.path().filename().string()), entry.path().string()});
     std::sort(found.begin(), found.end(),
               [](const RobotLine& a, const RobotLine& b) { return a.path < b.path; });
     for (RobotLine& robot : found) {

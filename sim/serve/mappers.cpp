@@ -239,22 +239,12 @@ class OwnLine {
 static_assert(plant::RobotLink<OwnLine>);
 using LinedRobot = plant::RunningRobot<OwnLine>;
 
-/// One of its own for each name: what a name of a line cannot have is written as %2F.
-std::string file_name(std::string_view name) {
-  std::string text;
-  for (std::size_t i = 0; i < name.size(); ++i) {
-    const bool is_end = name.substr(i) == ".lock";  // a line has a lock file beside it
-    const bool stays = name[i] != '/' && name[i] != '%' && !(name[i] == '.' && (i == 0 || is_end));
-    text += stays ? std::string{name[i]} : fmt::format("%{:02X}", static_cast<unsigned char>(name[i]));
-  }
-  return text;
-}
-
 Ending serve_lines(plant::World& world, const MapperOptions& options, const Shell& shell) {
   std::vector<std::unique_ptr<OwnLine>> lines;
   std::vector<std::unique_ptr<LinedRobot>> robots;
   for (std::size_t i = 0; i < world.size(); ++i) {
-    auto opened = transport::Pty::open(transport::robot_lines() + "/" + file_name(world.robot(i).name()));
+    auto opened =
+        transport::Pty::open(transport::robot_lines() + "/" + transport::line_name(world.robot(i).name()));
     if (!opened) return Ending{opened.error};
     if (!options.uncalibrated) plant::calibrate(world.robot(i));
     lines.push_back(std::make_unique<OwnLine>(std::move(*opened)));

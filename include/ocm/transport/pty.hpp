@@ -40,6 +40,35 @@ namespace ocm::transport {
 [[nodiscard]] inline std::string robot_lines() {
   return host::user_directory() + "/line";
 }
+/// What a robot's line is called there: as the robot, with `%2F` for what a file's name cannot have, a dot in
+/// front, and the ending of lock files. No two robots have the same.
+[[nodiscard]] inline std::string line_name(std::string_view robot) {
+  constexpr std::string_view digits = "0123456789ABCDEF";
+  std::string name;
+  for (std::size_t i = 0; i < robot.size(); ++i) {
+    const auto byte = static_cast<unsigned char>(robot[i]);
+    const bool leads = robot[i] == '.' && (i == 0 || robot.substr(i) == ".lock");
+    if (robot[i] != '/' && robot[i] != '%' && !leads)
+      name += robot[i];
+    else
+      name.append({'%', digits[byte / 16], digits[byte % 16]});
+  }
+  return name;
+}
+/// The robot whose line is called so. What is no code stays as it is.
+[[nodiscard]] inline std::string robot_of_line(std::string_view name) {
+  const auto digit = [](char c) {
+    return c >= '0' && c <= '9' ? c - '0' : c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
+  };
+  std::string robot;
+  for (std::size_t i = 0; i < name.size(); ++i) {
+    const bool coded =
+        name[i] == '%' && i + 2 < name.size() && digit(name[i + 1]) >= 0 && digit(name[i + 2]) >= 0;
+    robot += coded ? static_cast<char>(digit(name[i + 1]) * 16 + digit(name[i + 2])) : name[i];
+    if (coded) i += 2;
+  }
+  return robot;
+}
 /// Makes the folder of this user in which both lie, and that of the lines; nothing when they can be trusted.
 [[nodiscard]] inline std::optional<host::Failure> make_line_folders() {
   const std::string directory = host::user_directory();

@@ -4,7 +4,9 @@
 #include <filesystem>
 #include <fstream>
 #include <poll.h>
+#include <set>
 #include <string>
+#include <string_view>
 
 #include <catch2/catch.hpp>
 
@@ -210,6 +212,29 @@ TEST_CASE("pty: a serial port at the other end sees it go") {
   while (got && *got != 0) got = port->read(room);
   CHECK(got.error == base::Error::closed);
   CHECK_THAT(port->failure().what, Contains("is gone"));
+}
+
+TEST_CASE("pty: each robot has a line of its own, whose name a file can have") {
+  CHECK(transport::line_name("AVR") == "AVR");
+  CHECK(transport::line_name("room/2") == "room%2F2");
+  CHECK(transport::line_name("..") == "%2E.");
+  CHECK(transport::line_name("AVR.lock") == "AVR%2Elock");
+  CHECK(transport::line_name("v1.2%") == "v1.2%25");
+  CHECK(transport::robot_of_line("100%") == "100%");
+  CHECK(transport::robot_of_line("%2") == "%2");
+  CHECK(transport::robot_of_line("%2f%ZZ") == "%2f%ZZ");
+  std::set<std::string> names;
+  std::size_t robots = 0;
+  constexpr std::string_view letters = "./%2F5";
+  for (std::size_t number = 0; number < 6 * 6 * 6 * 6; ++number, ++robots) {
+    std::string robot;
+    for (std::size_t rest = number, i = 0; i < 4; ++i, rest /= 6) robot += letters[rest % 6];
+    const std::string name = transport::line_name(robot);
+    CHECK(name.find('/') == std::string::npos);
+    CHECK(transport::robot_of_line(name) == robot);
+    names.insert(name);
+  }
+  CHECK(names.size() == robots);
 }
 
 }  // namespace transport_pty_test
