@@ -27,6 +27,10 @@ void DongleLine::on_pin() noexcept {
 
 std::size_t DongleLine::send(std::span<const std::uint8_t> bytes) noexcept {
   const chibios::Lock lock;
+  if (!linked_) {  // it was lost behind the look of who sends
+    dropped_ += static_cast<std::uint32_t>(bytes.size());
+    return bytes.size();
+  }
   std::size_t taken = 0;
   while (taken != bytes.size() && size_ != ring_.size())
     ring_[(begin_ + size_++) % ring_.size()] = bytes[taken++];

@@ -107,12 +107,20 @@ class Communication {
     }
   }
   void hear_confirm() noexcept {
-    if (shared_.state_now() == State::connected) {
+    const bool begins = shared_.state_now() == State::connected;
+    Locator::Frame before;
+    if (begins) {
       [[maybe_unused]] const auto claim = shared_.located.claim();
       if (!shared_.locator.calibrated()) use_stored();
+      before = shared_.locator.frame();
       shared_.locator.begin_at_zero();
     }
-    if (shared_.apply(Event::confirm).reset) last_idle_ = shared_.port->now();
+    if (shared_.apply(Event::confirm).reset) {
+      last_idle_ = shared_.port->now();
+    } else if (begins) {  // the link has died meanwhile, and the way home is known in the frame of before
+      [[maybe_unused]] const auto claim = shared_.located.claim();
+      shared_.locator.go_back_to(before);
+    }
   }
   /// The calibration of before it was switched off.
   void use_stored() noexcept {

@@ -225,4 +225,39 @@ TEST_CASE("mapper: stopped in the middle of a control step, it is stopped", "[ma
   }
 }
 
+TEST_CASE("mapper: a link that dies in the moment of its confirmation leaves the place as it was",
+          "[mapper][properties]") {
+  int refused = 0;
+  for (int nth = 0; nth < 20; ++nth) {
+    CAPTURE(nth);
+    BasicBench<Preemptive> bench;
+    bench.confirm();
+    bench.say("{U,0,50}\n");
+    bench.run_for(50ms);
+    REQUIRE(bench.run_until([&] { return !bench.robot.busy(); }, 30s));
+    bench.link(false);
+    bench.run_for(200ms);
+    bench.link(true);
+    bench.run_for(300ms);
+    REQUIRE(bench.is(State::connected));
+    const motion::Pose before = bench.robot.pose();
+    REQUIRE(before.x_m > 0.4F);
+    const auto refusals = bench.robot.counters().refused;
+    int ends = 0;
+    bench.port.between = [&bench, &ends, nth, inside = false]() mutable {
+      if (inside || bench.port.running != static_cast<std::size_t>(scheduling::Level::high)) return;
+      inside = true;
+      if (ends++ == nth) bench.link(false);
+      inside = false;
+    };
+    bench.say("{S,CON}\n");
+    bench.run_for(100ms);
+    bench.port.between = nullptr;
+    if (bench.robot.counters().refused == refusals) continue;  // it was confirmed, or never heard
+    ++refused;
+    CHECK(std::fabs(bench.robot.pose().x_m - before.x_m) < 0.01F);
+  }
+  CHECK(refused > 0);
+}
+
 }  // namespace mapper_app_robot_properties_test
