@@ -497,6 +497,14 @@ TEST_CASE("avoid without the ring stands, says so once, and goes on when it is b
     setup.command(amiro::Avoid{});
     setup.pass(200ms);
   }
+  // One that takes the other's place says so, too.
+  go_on(200ms);
+  amiro::Home home;
+  home.set_distance_m(0.06);
+  home.set_speed_m_per_s(0.1);
+  setup.command(home);
+  setup.pass(200ms);
+  CHECK(setup.robot.power_management().counters().failed == 5);
 }
 
 TEST_CASE("avoid is refused beyond its range and without the ring's offsets") {

@@ -156,15 +156,15 @@ class Board : public Node<amiro::PowerManagement, Bus, P, 1, A> {
     if (active) {
       if (!commanding_) {
         behaviours_ = {};
-        blind_ = false;
+        blind_for_ = {};
       }
       const auto counts = hardware_->ring();
       const auto offsets = this->offsets();
       const bool blind = !counts || !offsets;
-      if (blind && !blind_)
-        controller_.refuse(wanted.home != amiro::Home{} ? amiro::Home::id : amiro::Avoid::id,
-                           counts ? base::Error::not_sampled : counts.error);
-      blind_ = blind;
+      const protocol::TopicId asked = wanted.home != amiro::Home{} ? amiro::Home::id : amiro::Avoid::id;
+      if (blind && blind_for_ != asked)
+        controller_.refuse(asked, counts ? base::Error::not_sampled : counts.error);
+      blind_for_ = blind ? asked : protocol::TopicId{};
       if (!blind) motors = behaviours_.step(wanted, *counts, *offsets, release.missed + 1);
     }
     const scheduling::Outcome outcome = controller_.command(motors, avoidance_priority);
@@ -177,8 +177,8 @@ class Board : public Node<amiro::PowerManagement, Bus, P, 1, A> {
   Wanted wanted_{};  // with the lock
   // Of the task only
   RingBehaviours behaviours_{};
-  bool commanding_ = false;  // the motors follow this board, or their rest could not be sent yet
-  bool blind_ = false;       // active without a sample, which was reported
+  bool commanding_ = false;        // the motors follow this board, or their rest could not be sent yet
+  protocol::TopicId blind_for_{};  // active without a sample, which was reported; 0 is none of both
 };
 
 }  // namespace ocm::firmware::boards::power_management
