@@ -137,7 +137,8 @@ local function add_field(tvb, tree, field)
     item:append_text(" " .. field.unit)
     text = text .. " " .. field.unit
   end
-  local name = not wide and field.names and field.names[raw]
+  local number = wide and raw:tonumber() or raw
+  local name = field.names and math.abs(number) < 2 ^ 53 and field.names[number]
   if name then
     if field.unit then item:append_text(" (" .. name .. ")") end
     text = field.name .. " " .. name

@@ -322,13 +322,14 @@ local function add_field(tvb, tree, field)
     item:append_text(" " .. field.unit)
     text = text .. " " .. field.unit
   end
-  local name = not wide and field.names and field.names[raw]
+  local number = wide and raw:tonumber() or raw
+  local name = field.names and math.abs(number) < 2 ^ 53 and field.names[number]
   if name then
     if field.unit then item:append_text(" (" .. name .. ")") end
     text = field.name .. " " .. name
   end
   for _, flag in ipairs(field.bits) do
-    local set = not wide and math.floor(raw / 2 ^ flag.bit) % 2 == 1
+    local set = (wide and raw:rshift(flag.bit):band(1):tonumber() or math.floor(raw / 2 ^ flag.bit) % 2) == 1
     if set then item:append_text(" " .. flag.name) end
     item:add(flag.proto, range, set)
   end
