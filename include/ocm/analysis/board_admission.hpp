@@ -8,14 +8,16 @@
 ///
 ///     reads = blocking + C_s + sum over tasks and streams k, no less urgent, of ceil(reads / T_k) C_k
 ///     sends = B + F_s + sum over streams k, no less urgent, of ceil((sends + reads_k + tau) / T_k) F_k
-///     reads + sends <= min(D_s, T_s)
+///     reads + sends <= min(D_s, max(T_s, Q_s)), and each of the two <= T_s
 ///
 /// C: processor and waiting for the part; of more urgent ones without W, what they wait for less urgent ones,
 /// and as if they came up to S later, as in task_response.hpp. F: all frames of a sample, at their exact
-/// lengths and priority. B: one frame of any node, already on its way. The first is the response time on a
-/// preemptive processor, the second the sufficient one on CAN [Davis et al. 2007, equation 16], with a
-/// sample's frames as one. Streams of one level delay each other whatever their order. A board does not hear
-/// what others send, so `Costs` says which share of the bus is its own; who hears all is the operator's tool
+/// lengths and priority. B: one frame of any node, already on its way. Q: the topic's shortest period, before
+/// which the part has nothing new, and nothing is lost by a late sample. The board's own tasks are demand,
+/// and what the less urgent of them are left is not looked at. The first is the response time on a preemptive
+/// processor, the second the sufficient one on CAN [Davis et al. 2007, equation 16], with a sample's frames
+/// as one. Streams of one level delay each other whatever their order. A board does not hear what others
+/// send, so `Costs` says which share of the bus is its own; who hears all is the operator's tool
 /// (docs/admission.md).
 ///
 /// Memory: 8 bytes a sensor. Time: sensors^2 steps an iteration and at most `most_iterations` of each sum, no

@@ -40,7 +40,7 @@ struct Activity {
   std::uint32_t publishing = 0;  ///< bit n: the board's n-th sensor
   std::uint32_t faults = 0;      ///< the same
   std::uint64_t overload = 0;
-  std::uint32_t send_failed = 0;  ///< frames given up
+  std::uint32_t send_failed = 0;  ///< samples given up
 };
 
 struct Refusal {

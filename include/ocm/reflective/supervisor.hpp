@@ -188,7 +188,7 @@ class Supervisor {
   struct ConditionState {
     Truth truth = Truth::unknown;
     bool late = false;       ///< gap: the last distance was one
-    bool watching = false;   ///< age, gap, rate: its topic is streamed, or it needs none
+    bool watching = false;   ///< field, age, gap, rate: its topic is streamed, or it needs none
     std::int64_t count = 0;  ///< rate: samples in this window
     base::Time last{};       ///< age, gap: of the last sample; rate: when the window began
   };

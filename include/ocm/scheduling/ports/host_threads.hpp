@@ -110,7 +110,8 @@ class HostThreads {
   host::Outcome<bool> start(std::function<void()> expire, std::function<void(Level)> run) {
     expire_ = std::move(expire);
     run_ = std::move(run);
-    for (std::size_t who = 0; who < contexts_.size(); ++who) {
+    // The highest priority first: who is not permitted that one is not permitted any.
+    for (std::size_t who = contexts_.size(); who-- > 0;) {
       contexts_[who].owner = this;
       if (const int error = create(who); error != 0) {
         stop();
@@ -157,7 +158,7 @@ class HostThreads {
     int error = EPERM;
     if (options_.real_time && !shortfall_) {
       error = create_real_time(who);
-      // The threads before this one, if any, have their priorities: all were permitted or none.
+      // The threads before this one, if any, have their priorities.
       if (error != 0)
         shortfall_ = host::Failure{"no real-time priorities for the levels: " + describe(error),
                                    "run it with CAP_SYS_NICE, or permit them (ulimit -r " +
