@@ -61,6 +61,7 @@ class KeyDrive {
     for (;;) {
       const auto pressed = keys.read();
       if (!pressed) return false;
+      if (driven_ == Direction{}) timeline.forgive_a_stop();  // nothing was held meanwhile
       const auto now = Timeline::Clock::now();
       if (!take(*pressed, timeline, now.time_since_epoch())) return true;
       const Direction direction = steering_.direction(now.time_since_epoch());
@@ -184,7 +185,8 @@ int drive_by_keys(Session& session, const KeyDriveOptions& options) {
     timeline.expect_no_other();
     quit = drive.run(keys, timeline);
     timeline.rest();
-    if (quit || interrupted() == SIGINT) drive.show_end();  // else the terminal may be gone
+    const bool is_gone = !quit && (interrupted() == 0 || interrupted() == SIGHUP);  // the terminal
+    if (!is_gone) drive.show_end();
   }
   const bool fine = timeline.finish();
   return exit_code_after_interrupt(quit && fine ? exit_success : exit_failure);

@@ -27,18 +27,22 @@ class KeyInput {
 
   [[nodiscard]] bool is_terminal() const noexcept { return is_terminal_; }
   /// What was pressed since it was asked last, until it is asked again; nothing: the terminal is gone. The
-  /// beginning of a sequence of a key, such as an arrow's, is kept for the next time, when its end may have
-  /// come.
+  /// beginning of a sequence of a key, such as an arrow's, is kept for some looks: its end may be on its way.
   [[nodiscard]] std::optional<std::string_view> read() noexcept {
+    constexpr unsigned looks_for_the_end = 6;
     std::memmove(buffer_, buffer_ + given_, kept_);
-    given_ = std::exchange(kept_, 0);
-    if (!has_keys()) return std::string_view{buffer_, given_};
-    const ssize_t count = ::read(STDIN_FILENO, buffer_ + given_, sizeof buffer_ - given_);
+    given_ = 0;
+    if (!has_keys()) {
+      if (kept_ != 0 && ++looks_ == looks_for_the_end) given_ = std::exchange(kept_, 0);
+      return std::string_view{buffer_, given_};
+    }
+    const ssize_t count = ::read(STDIN_FILENO, buffer_ + kept_, sizeof buffer_ - kept_);
     if (count < 0 && errno != EAGAIN && errno != EINTR) return std::nullopt;  // closed: EIO, or SIGHUP
     if (count > 0) {
-      given_ += static_cast<std::size_t>(count);
-      kept_ = begun({buffer_, given_});
-      given_ -= kept_;
+      const std::size_t all = kept_ + static_cast<std::size_t>(count);
+      kept_ = begun({buffer_, all});
+      given_ = all - kept_;
+      looks_ = 0;
     }
     return std::string_view{buffer_, given_};
   }
@@ -68,6 +72,8 @@ class KeyInput {
     const std::size_t at = text.rfind('\x1b');
     if (at == text.npos) return 0;
     const std::string_view sequence = text.substr(at);
+    constexpr std::size_t longest = 16;
+    if (sequence.size() > longest) return 0;
     if (sequence.size() > 1 && sequence[1] != '[' && sequence[1] != 'O') return 0;
     for (const char c : sequence.substr(std::min<std::size_t>(sequence.size(), 2)))
       if (c >= '@' && c <= '~') return 0;
@@ -79,6 +85,7 @@ class KeyInput {
   char buffer_[64] = {};
   std::size_t given_ = 0;  ///< bytes
   std::size_t kept_ = 0;   ///< behind those
+  unsigned looks_ = 0;     ///< since they came
 };
 
 }  // namespace ocm::cli

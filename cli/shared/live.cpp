@@ -62,6 +62,7 @@ template <class Ask, class GiveTo>
 Over Live::receive_next(Clock::time_point until, const Ask& ask, const GiveTo& take) {
   bool all_taken = !idle_;
   overrun_ = {};
+  looked_ = Clock::now();
   while (interrupted() == 0) {
     Clock::duration left{0};
     if (all_taken) {

@@ -4,7 +4,9 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <set>
 #include <span>
+#include <string>
 #include <system_error>
 #include <unistd.h>
 #include <utility>
@@ -106,7 +108,7 @@ const spec::Spec& Session::spec() {
 }
 
 spec::Model Session::load(const std::string& word) const {
-  const auto [interface, file] = parse_spec_word(word);
+  const auto [interface, file, bus] = parse_spec_word(word);
   auto loaded = spec::load(file);
   if (strict_spec_) stop_at(loaded.doubts);
   stop_at(loaded.problems);
@@ -150,12 +152,12 @@ void Session::keep_specs(std::string_view verb, const std::string& output) const
 
 std::string Session::narrow_to_bus(std::string_view verb, const std::string& bus) {
   std::vector<SpecWord> words;
-  std::vector<std::string> named;
+  std::vector<std::string> named;  // as they were typed first
+  std::set<std::string> interfaces;
   for (const std::string& word : spec_files) {
     words.push_back(parse_spec_word(word));
-    const std::string& interface = words.back().interface;
-    if (!interface.empty() && std::find(named.begin(), named.end(), interface) == named.end())
-      named.push_back(interface);
+    const SpecWord& last = words.back();
+    if (!last.interface.empty() && interfaces.insert(last.interface).second) named.push_back(last.bus);
   }
   if (named.empty()) return bus;
   std::string all = named.front();
@@ -179,7 +181,7 @@ std::string Session::narrow_to_bus(std::string_view verb, const std::string& bus
 
 void Session::refuse_interfaces(std::string_view verb) {
   for (const std::string& word : spec_files) {
-    const auto [interface, file] = parse_spec_word(word);
+    const auto [interface, file, bus] = parse_spec_word(word);
     if (!interface.empty())
       fail({fmt::format("{}: --spec {}: it is about one bus, whatever its name", verb, word),
             fmt::format("--spec {}", file)},

@@ -43,7 +43,7 @@ SpecWord parse_spec_word(const std::string& word) {
           fmt::format("a name of 1 to {} characters, without blanks and '/', such as --spec can0={}",
                       IFNAMSIZ - 1, parts.file)},
          exit_usage);
-  return {interface_of(parts.interface), parts.file};
+  return {interface_of(parts.interface), parts.file, parts.interface};
 }
 
 }  // namespace ocm::cli

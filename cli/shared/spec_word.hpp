@@ -9,6 +9,7 @@ namespace ocm::cli {
 struct SpecWord {
   std::string interface;  ///< empty: all
   std::string file;
+  std::string bus{};  ///< the interface as it was typed: with the rates of an adapter
 };
 
 /// Whether an interface can have this name: that of a network device of Linux (1 to 15 bytes, without blanks,

@@ -52,8 +52,11 @@ void declare_drive(Verb verb, Session& session, int& exit_code) {
   verb.add_flag("--force", options->force, "drive even if another program commands the motors");
   verb.callback([verb, options, &session, &exit_code] {
     const auto& words = options->commanding.words();
-    if (!words.empty() && words[0] == "stop" && !verb.is_typed("--for"))
-      options->commanding.options().lasting.reset();  // a config file's, for driving
+    if (!words.empty() && words[0] == "stop") {  // what a config file has is for driving
+      if (!verb.is_typed("--for")) options->commanding.options().lasting.reset();
+      if (!verb.is_typed("--keys")) options->keys = false;
+      if (!verb.is_typed("--gamepad")) options->gamepad.clear();
+    }
     const auto others = options->force ? Timeline::Others::allowed : Timeline::Others::refused;
     if (options->keys) {
       exit_code = drive_by_keys(session, {options->commanding.words(), options->commanding.options(), others,

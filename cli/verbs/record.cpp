@@ -20,6 +20,7 @@
 #include "cli/shared/filters.hpp"
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/messages.hpp"
+#include "cli/shared/spec_word.hpp"
 #include "cli/shared/unhurried_messages.hpp"
 #include "cli/shared/values.hpp"
 #include "cli/verbs/verb.hpp"
@@ -105,7 +106,8 @@ class ChosenFilters {
 
   [[nodiscard]] Filters of(std::string_view bus) const {
     std::vector<const protocol::Topic*> topics = topics_;
-    std::erase_if(topics, [bus](const protocol::Topic* topic) { return !topic->is_on(bus); });
+    const std::string interface = interface_of(bus);
+    std::erase_if(topics, [&](const protocol::Topic* topic) { return !topic->is_on(interface); });
     Filters filters = filters_for(topics, commands_);
     filters.insert(filters.end(), filters_.begin(), filters_.end());
     if (filters.empty() && !topics_.empty()) filters.push_back(no_frame);
@@ -113,9 +115,10 @@ class ChosenFilters {
   }
   /// Whether anything of what is named can come on the bus.
   [[nodiscard]] bool has_any_on(std::string_view bus) const {
+    const std::string interface = interface_of(bus);
     return topics_.empty() || !filters_.empty() ||
            std::any_of(topics_.begin(), topics_.end(),
-                       [bus](const auto* topic) { return topic->is_on(bus); });
+                       [&](const auto* topic) { return topic->is_on(interface); });
   }
 
  private:

@@ -52,7 +52,7 @@ void take_robots(Verb verb, GivenToServe& given) {
   const bool logged = std::any_of(given.words.begin(), given.words.end(), fleet::is_line_log);
   if (!named && !central && !logged) {
     for (const char* option : fleet_options)
-      if (verb.count(option) != 0)
+      if (verb.is_typed(option))
         fail({fmt::format("serve: {} without robots", option),
               "add the word robots, or --central PATH: amiroctl serve robots"},
              exit_usage);
@@ -82,7 +82,7 @@ void serve_given(Verb verb, Session& session, GivenToServe& given, int& exit_cod
          exit_usage);
   if (!options.log.empty() && options.fleet)
     for (const char* option : line_options)
-      if (verb.count(option) != 0)
+      if (verb.is_typed(option))
         fail({fmt::format("serve: {} and a log", option), "a log has no line: drop one of them"}, exit_usage);
   if (options.opens && options.commands)
     fail({"serve: --open and --allow-commands: other users of this machine would see the token, among the "

@@ -90,7 +90,7 @@ simulate::BitRates bit_rates(Verb verb, const sim::AmiroOptions& options, Sessio
 /// What is meant for the virtual bus.
 void refuse_bus_options(Verb verb, const Session& session) {
   for (const char* option : {"--bus-errors", "--bitrate", "--data-bitrate", "--speed"})
-    if (verb.count(option) != 0)
+    if (verb.is_typed(option))
       fail({fmt::format("sim: {} with --bus {}", option, session.bus_name),
             "leave one out: it is for the virtual bus"},
            exit_usage);
@@ -139,7 +139,7 @@ void add_mappers(Verb verb, sim::MapperOptions& options) {
 bool wants_mappers(Verb verb) {
   if (verb.count("--robots") != 0 || verb.count("--world") != 0) return true;
   for (const char* option : mapper_options)
-    if (verb.count(option) != 0)
+    if (verb.is_typed(option))
       fail({fmt::format("sim: {} without --robots", option), "add --robots N, or leave it out"}, exit_usage);
   return false;
 }
@@ -148,7 +148,7 @@ bool wants_mappers(Verb verb) {
 void refuse_boards_options(Verb verb, const Session& session) {
   for (const char* option : {"--bus-errors", "--boards", "--images", "--without", "--frozen", "--bitrate",
                              "--data-bitrate", "--sporadic"})
-    if (verb.count(option) != 0)
+    if (verb.is_typed(option))
       fail({fmt::format("sim: {} with mappers", option), "they have no bus and no boards: leave one out"},
            exit_usage);
   const char* environment = std::getenv("AMIROCTL_BUS");
@@ -156,7 +156,7 @@ void refuse_boards_options(Verb verb, const Session& session) {
     fail({"sim: --bus with mappers", "they have no bus: leave one out"}, exit_usage);
   if (verb.count("--lines") != 0)
     for (const char* option : {"--radio-loss", "--radio-range", "--radio-repeats", "--links"})
-      if (verb.count(option) != 0)
+      if (verb.is_typed(option))
         fail({fmt::format("sim: {} with --lines", option),
               "without a central there is no radio: leave one out"},
              exit_usage);
@@ -165,7 +165,7 @@ void refuse_boards_options(Verb verb, const Session& session) {
 /// What is meant for the page.
 void refuse_page_options(Verb verb, const simulate::ShowOptions& show, bool lines) {
   for (const char* option : {"--port", "--allow-commands", "--open"})
-    if (verb.count(option) != 0 && show.kind != "page")
+    if (verb.is_typed(option) && show.kind != "page")
       fail({fmt::format("sim: {} is of the page", option), "add --show, or leave it out"}, exit_usage);
   if (show.kind == "page" && lines)
     fail({"sim: --show with --lines",

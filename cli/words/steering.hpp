@@ -111,11 +111,13 @@ class Steering {
  private:
   /// A sequence that begins with ESC, as far as it came, or one character.
   [[nodiscard]] static std::string_view next_key(std::string_view bytes) noexcept {
-    if (bytes.size() < 3 || bytes[0] != '\x1b' || (bytes[1] != '[' && bytes[1] != 'O'))
+    if (bytes.size() < 2 || bytes[0] != '\x1b' || (bytes[1] != '[' && bytes[1] != 'O'))
       return bytes.substr(0, 1);
-    std::size_t end = 2;
-    while (end < bytes.size() && (bytes[end] < '@' || bytes[end] > '~')) ++end;
-    return bytes.substr(0, std::min(end + 1, bytes.size()));
+    for (std::size_t end = 2; end < bytes.size(); ++end) {
+      if (bytes[end] == '\x1b') return bytes.substr(0, end);  // another begins: this one has no end
+      if (bytes[end] >= '@' && bytes[end] <= '~') return bytes.substr(0, end + 1);
+    }
+    return bytes;
   }
 
   Direction direction_;

@@ -6,7 +6,7 @@ import subprocess
 import sys
 import time
 
-from harness import Case, main, waiting
+from harness import SOURCE, Case, main, waiting
 from played_adapter import Adapter, WithAdapter
 
 # Gyroscope once, and what the thesis's robot answers: x = -4 is 65532, that is -0.07 deg/s.
@@ -30,6 +30,27 @@ class OnASerialLine(WithAdapter, Case):
         adapter.read_all()
         self.assertFalse(adapter.open, "the channel stays open after the tool has ended")
         self.assertEqual([c for c in adapter.commands if c][:6], ["C", "V", "S6", "Z1", "O", "F"])
+
+    def test_a_spec_of_the_adapter(self):
+        """With and without its rate in either place; what is for another interface is none of its."""
+        spec = os.path.join(SOURCE, "spec", "topics.json")
+        adapter = self.adapter(script={GYRO_ONCE: [GYRO + "0010\r"]})
+        address = f"slcan:{adapter.path}"
+        for interface in (address, address + "@500k"):
+            for bus in (address, address + "@500k"):
+                words = ("--bus", bus, "--spec", f"{interface}={spec}", "--spec", f"can0={os.path.join(SOURCE, 'tests/sim/messages/bus.dbc')}")
+                out, _ = self.run_tool(*words, "once", "gyro", "--wait")
+                self.assertEqual(self.objects(out)[0]["topic"], "gyroscope")
+                log = os.path.join(self.folder, f"{len(os.listdir(self.folder))}.log")
+                recorder = self.start(*words, "record", "-o", log, "gyro", "--duration", "20s")
+                self.assertIn("bus: ", recorder.stderr.readline())
+
+                def recorded():
+                    adapter.say(GYRO + "0010\r")
+                    return os.path.exists(log) and os.path.getsize(log) > 0
+                waiting.until(recorded, "a frame in the log")
+                _, err = self.interrupt(recorder)
+                self.assertRegex(err, "recorded [1-9]")
 
     def test_bit_rates_of_the_address(self):
         adapter = self.adapter()

@@ -32,6 +32,21 @@ TEST_CASE("steering: arrows and letters") {
   }
 }
 
+TEST_CASE("steering: the beginning of a sequence is no key, and neither is what follows lost") {
+  for (const std::string_view begun : {"\x1b[", "\x1bO", "\x1b[1;"}) {
+    Steering steering;
+    std::string_view keys = begun;
+    CHECK(steering.take(keys, 1s) == Ask::nothing);
+    CHECK(keys.empty());
+    const std::string both = std::string{begun} + "\x1b[D";
+    keys = both;
+    CHECK(steering.take(keys, 1s) == Ask::nothing);
+    CHECK(keys == "\x1b[D");
+    CHECK(steering.take(keys, 1s) == Ask::nothing);
+    CHECK(steering.direction(1s) == Direction{0, 1});
+  }
+}
+
 TEST_CASE(
     "steering: a tap ends after a terminal's first wait, a key that was held soon after it was released") {
   Steering steering;
