@@ -473,16 +473,23 @@ TEST_CASE("replay: what has come late by a slow pipe is not sent at once when th
   CHECK(at_once <= 5);  // as late as motors wait for a set point
 }
 
-TEST_CASE("replay: where one bus fails, what runs on the others is ended") {
-  const Silence silence;
+constexpr can::Frame travels{0x20B, 8, {0x50, 0xC3, 0, 0, 0, 0, 0xE8, 3}};
+
+/// Two buses: motors that move on the first, which is gone after a second; a travel and motors on the second,
+/// which `conditions` are of. What is said of each, and what the second was given.
+struct OneFailed {
+  std::vector<std::string> told;
+  std::vector<PlayedBus::Sent> sent;
+};
+OneFailed one_failed(const PlayedBus::Conditions& second) {
   World world{1};
   replay::PlayerOptions options;
   std::vector<replay::Outlet> outlets;
   std::vector<PlayedBus*> buses;
   for (std::size_t i = 0; i < 2; ++i) {
     const std::string name = "can" + std::to_string(i);
-    PlayedBus::Conditions conditions;
-    if (i == 0) conditions.gone = World::start + 1s;
+    PlayedBus::Conditions conditions = second;
+    if (i == 0) conditions = {.gone = World::start + 1s};
     auto made = std::make_unique<PlayedBus>(world, conditions, name, 500 + static_cast<int>(i));
     buses.push_back(made.get());
     outlets.emplace_back(std::move(made), amiro::catalogue);
@@ -490,7 +497,6 @@ TEST_CASE("replay: where one bus fails, what runs on the others is ended") {
   }
   can::Frame moves{motors, 8, {}};
   moves.data[0] = 100;
-  const can::Frame travels{0x20B, 8, {0x50, 0xC3, 0, 0, 0, 0, 0xE8, 3}};
   std::vector<log::Entry> entries{{base::Time{0s}, travels, 1}, {base::Time{100ms}, moves, 1}};
   for (int i = 2; i < 40; ++i) entries.emplace_back(base::Time{i * 100ms}, moves, std::uint16_t{0});
   log::MemorySource nothing{""};
@@ -499,15 +505,36 @@ TEST_CASE("replay: where one bus fails, what runs on the others is ended") {
   replay::Player player{options, replay::Selection{amiro::catalogue, {}, replay::Only::all},
                         std::move(outlets), nullptr};
   CHECK_THROWS_AS(player.play(log), cli::Exit);
-  // The first robot may move: its bus is gone. The second has heard zero, for both.
-  const auto told = player.end_after_all();
-  REQUIRE(told.size() == 1);
-  CHECK(told[0] == std::string{"can0: "} + cli::still_moving);
-  const auto& sent = buses[1]->sent();
-  REQUIRE(sent.size() == 4);
-  CHECK((sent[2].frame.id == motors && cli::is_rest(sent[2].frame)));
-  CHECK((sent[3].frame.id == travels.id && cli::is_rest(sent[3].frame)));
+  OneFailed result{player.end_after_all(), buses[1]->sent()};
   CHECK(player.end_after_all().empty());
+  return result;
+}
+
+TEST_CASE("replay: where one bus fails, what runs on the others is ended") {
+  const Silence silence;
+  const std::string first = std::string{"can0: "} + cli::still_moving;
+  const std::string second = std::string{"can1: "} + cli::still_travelling;
+  {
+    // The first robot may move: its bus is gone. The second has heard zero, for both.
+    const auto [told, sent] = one_failed({});
+    CHECK(told == std::vector{first});
+    REQUIRE(sent.size() == 4);
+    CHECK((sent[2].frame.id == motors && cli::is_rest(sent[2].frame)));
+    CHECK((sent[3].frame.id == travels.id && cli::is_rest(sent[3].frame)));
+  }
+  {
+    // Full for longer than the first zero waits: the second is given all the same.
+    const auto [told, sent] = one_failed({.down = {{World::start + 900ms, World::start + 1300ms}}});
+    CHECK(told == std::vector{first, second});
+    REQUIRE(sent.size() == 3);
+    CHECK((sent[2].frame.id == travels.id && cli::is_rest(sent[2].frame)));
+  }
+  {
+    // It takes both, and neither leaves.
+    const auto [told, sent] = one_failed({.stuck = {{World::start + 900ms, World::start + 60s}}});
+    CHECK(told == std::vector{first, second});
+    CHECK(sent.size() == 4);
+  }
 }
 
 }  // namespace tool_clock_replay_test

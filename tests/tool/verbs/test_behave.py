@@ -119,6 +119,12 @@ class Behave(Case):
             if number == signal.SIGHUP:
                 behave = self.behaving("avoid")
 
+    def test_what_it_asked_for_ends_with_it(self):
+        self.start_sim()
+        self.run_tool("behave", "follow", "--for", "500ms")
+        out, _ = self.run_tool("listen", "behaviour", "--json", "--timeout", "500ms")
+        self.assertEqual(out, "")
+
     def test_a_set_point_ends_follow(self):
         self.start_sim()
         behave = self.behaving("follow")

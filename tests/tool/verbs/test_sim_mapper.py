@@ -120,6 +120,23 @@ class Simulated(Case):
         after = json.loads(self.run_tool("robots", "--json")[0].splitlines()[0])["pose"]
         self.assertNotEqual(before, after)
 
+    def test_a_program_that_stops_reading_loses_what_there_is_no_room_for_and_that_is_told(self):
+        sim = self.sim("--robots", "1", "--speed", "100")
+        line = self.central()
+        line.write("start\n")
+        line.find(1)
+        line.write("stop\nconn 0\n")
+        line.wait_for("connected 0\n")
+        line.wait_for(r"\{H,")
+        for _ in range(3):
+            line.write("{S,CON}\n")
+        line.wait_for(r"\{U,")
+        # 40 updates of some 30 bytes in each of its seconds, 100 of which pass in one: the room is for 64 KiB.
+        time.sleep(3)  # in which more comes than there is room for
+        line.close()
+        _, error = self.interrupt(sim)
+        self.assertRegex(error, r"\d+ bytes that the program did not read")
+
     def test_lost_packets_are_told(self):
         sim = self.sim("--robots", "2", "--speed", "10", "--radio-loss", "0.2", "--seed", "3")
         line = self.central()

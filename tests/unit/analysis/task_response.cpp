@@ -54,6 +54,16 @@ static_assert(beside({.cost = 5, .period = 100, .level = 1}, {.interrupt = 1}) =
 static_assert(beside({.cost = 11, .period = 100, .level = 1}) == Times<2>{10, 19});
 // On a slower processor by nine of 15.
 static_assert(beside({.cost = 5, .period = 100, .level = 1}, {.scale = 1'500'000}) == Times<2>{15, 20});
+// One that comes six late, and takes nine of its ten then, is done by 16: what it takes may come seven late.
+constexpr Task late_waiting{.cost = 10, .period = 20, .deadline = 16, .jitter = 6, .waits = 1};
+static_assert(responses(std::array{late_waiting, Task{.cost = 5, .period = 100, .level = 1}}) ==
+              Times<2>{16, 23});
+// One that misses its deadline is late by that at most, or nothing is promised: 8 - 4. Its jitter counts all
+// the same.
+constexpr Task missing{.cost = 10, .period = 20, .deadline = 8, .waits = 6};
+static_assert(responses(std::array{missing, Task{.cost = 11, .period = 100, .level = 1}})[1] == 15);
+constexpr Task missing_late{.cost = 10, .period = 20, .deadline = 8, .jitter = 6, .waits = 1};
+static_assert(responses(std::array{missing_late, Task{.cost = 6, .period = 100, .level = 1}})[1] == 24);
 static_assert(!Task{.cost = 10, .period = 20, .waits = 10}.valid());
 static_assert(!Task{.cost = 10, .period = 20, .waits = -1}.valid());
 
