@@ -121,7 +121,7 @@ class Simulated(Case):
         self.assertNotEqual(before, after)
 
     def test_a_program_that_stops_reading_loses_what_there_is_no_room_for_and_that_is_told(self):
-        sim = self.sim("--robots", "1", "--speed", "100")
+        sim = self.sim("--robots", "1", "--speed", "1000")
         line = self.central()
         line.write("start\n")
         line.find(1)
@@ -131,7 +131,7 @@ class Simulated(Case):
         for _ in range(3):
             line.write("{S,CON}\n")
         line.wait_for(r"\{U,")
-        # 40 updates of some 30 bytes in each of its seconds, 100 of which pass in one: the room is for 64 KiB.
+        # Five updates of some 28 bytes in each of its seconds, a thousand of which pass in one: the room is for 64 KiB.
         time.sleep(3)  # in which more comes than there is room for
         line.close()
         _, error = self.interrupt(sim)
