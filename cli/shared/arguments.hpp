@@ -136,7 +136,8 @@ class Verb {
 
   /// How often this option was given, "--robots".
   [[nodiscard]] std::size_t count(const std::string& option) const;
-  /// Whether the command line itself has it, not the environment or a config file.
+  /// Whether the command line itself has it, not the environment or a config file: what a person typed is
+  /// refused where it has no place, a default is left out there.
   [[nodiscard]] bool is_typed(const std::string& option) const;
   /// An option that was added: "words".
   [[nodiscard]] Option option(const std::string& name) const;

@@ -32,6 +32,7 @@ class KeyInput {
     constexpr unsigned looks_for_the_end = 6;
     std::memmove(buffer_, buffer_ + given_, kept_);
     given_ = 0;
+    keep_keys();
     if (!has_keys()) {
       if (kept_ != 0 && ++looks_ == looks_for_the_end) given_ = std::exchange(kept_, 0);
       return std::string_view{buffer_, given_};
@@ -55,15 +56,15 @@ class KeyInput {
     now.c_cc[VTIME] = 0;
     return ::tcsetattr(STDIN_FILENO, TCSANOW, &now) == 0;
   }
-  /// Whether `read` would not wait. A shell gives a program that was stopped the terminal back as it is for
-  /// the shell, line by line.
-  [[nodiscard]] bool has_keys() const noexcept {
+  /// A shell gives a program that was stopped the terminal back as it is for the shell, line by line.
+  void keep_keys() const noexcept {
     termios now{};
-    const pid_t owner =
-        ::tcgetpgrp(STDIN_FILENO);  // the shell's while this runs in the background; -1: it has none
-    if (::tcgetattr(STDIN_FILENO, &now) == 0 && (now.c_lflag & ICANON) != 0 &&
-        (owner == -1 || owner == ::getpgrp()))
-      (void)take_keys();
+    if (::tcgetattr(STDIN_FILENO, &now) != 0 || (now.c_lflag & ICANON) == 0) return;
+    // In the background it is the shell's, and a change of ours would stop us. -1: no program owns it.
+    const pid_t owner = ::tcgetpgrp(STDIN_FILENO);
+    if (owner == -1 || owner == ::getpgrp()) (void)take_keys();
+  }
+  [[nodiscard]] static bool has_keys() noexcept {
     pollfd input{STDIN_FILENO, POLLIN, 0};
     return ::poll(&input, 1, 0) != 0;
   }

@@ -45,8 +45,8 @@ class Live {
   using Take = std::function<bool(const can::Received&)>;
 
   /// `bus` must outlive it. `idle`, where there is one, is called before each wait, when no frame is left to
-  /// take; the time is looked at then, so that nothing of what came in time is left, if
-  /// it takes no more than a second of work behind that. A bus that always has a frame is left then.
+  /// take; the time is looked at then, so that nothing of what came in time is left. A bus
+  /// that always has a frame is left behind a second of work more.
   explicit Live(transport::Bus& bus, std::function<void()> idle = {}, Beside beside = {})
       : bus_(&bus), idle_(std::move(idle)), beside_(std::move(beside)) {}
 

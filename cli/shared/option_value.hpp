@@ -34,7 +34,8 @@ struct Refusal {
   std::string remedy;
 };
 
-/// "10" of "010", which would else be read as octal, as in C++. Anything but digits stays as it is.
+/// "10" of "010" and of "+010", which would else be read as octal, as in C++. Anything but digits stays as it
+/// is.
 [[nodiscard]] std::string without_leading_zeros(const std::string& text);
 
 /// One of a list of words.

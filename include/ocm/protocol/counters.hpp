@@ -31,8 +31,7 @@ struct Counters {
   std::uint32_t overrun = 0;      ///< released while the last sample still waited for the bus: not sampled
   std::uint32_t late = 0;         ///< released later than the topic's jitter allows
   std::uint32_t missed = 0;       ///< releases skipped because a whole period had passed
-  std::uint32_t send_failed =
-      0;  ///< the bus answered with an error: the sample, or what was left of it, given up
+  std::uint32_t send_failed = 0;  ///< the bus answered with an error: the rest of the sample given up
   // safety
   std::uint32_t timeouts = 0;  ///< actuators brought to rest because no set point came
   std::uint32_t bus_lost = 0;  ///< actuators brought to rest because the board lost the bus

@@ -65,7 +65,7 @@ class Dispatcher {
     publisher_.once(stream, level, at);
     attend(stream);
   }
-  /// The same, unless the stream publishes: its next release is as good, and none of them ends.
+  /// One release at `when`, unless the stream publishes: its next release is as good, and none of them ends.
   void once_unless_active(std::size_t stream, Level level, base::Time when) noexcept {
     [[maybe_unused]] const auto guard = port_->lock();
     if (publisher_.active(stream)) return;

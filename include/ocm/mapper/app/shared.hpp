@@ -182,11 +182,11 @@ struct Shared {
   Counters counters{};
   State state = State::advertising;
   Motion motion{};
-  std::uint32_t epoch = 0;   ///< how often the motors were switched off
-  std::uint32_t resets = 0;  ///< how many operators confirmed
-  std::uint32_t links = 0;   ///< how many links died
-  std::uint32_t orders_taken = 0;
-  base::Time entered{};  ///< into this state
+  std::uint32_t epoch = 0;         ///< how often the motors were switched off
+  std::uint32_t resets = 0;        ///< how many operators confirmed
+  std::uint32_t links = 0;         ///< how many links died
+  std::uint32_t orders_taken = 0;  ///< by the pose controller
+  base::Time entered{};            ///< into this state
   base::Time lost_at{};
   base::Time last_communication{};
   base::Time supervision_due{};
