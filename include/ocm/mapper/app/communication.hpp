@@ -107,20 +107,12 @@ class Communication {
     }
   }
   void hear_confirm() noexcept {
-    const bool begins = shared_.state_now() == State::connected;
-    Locator::Frame before;
-    if (begins) {
-      [[maybe_unused]] const auto claim = shared_.located.claim();
-      if (!shared_.locator.calibrated()) use_stored();
-      before = shared_.locator.frame();
-      shared_.locator.begin_at_zero();
-    }
-    if (shared_.apply(Event::confirm).reset) {
-      last_idle_ = shared_.port->now();
-    } else if (begins) {  // the link has died meanwhile, and the way home is known in the frame of before
-      [[maybe_unused]] const auto claim = shared_.located.claim();
-      shared_.locator.go_back_to(before);
-    }
+    // Held from before the reset on: who sees that there was one waits here for the pose, which is at zero.
+    [[maybe_unused]] const auto claim = shared_.located.claim();
+    if (!shared_.apply(Event::confirm).reset) return;  // refused, or the link has died: the way home is kept
+    if (!shared_.locator.calibrated()) use_stored();
+    shared_.locator.begin_at_zero();
+    last_idle_ = shared_.port->now();
   }
   /// The calibration of before it was switched off.
   void use_stored() noexcept {

@@ -61,18 +61,6 @@ class Locator {
                          dt_s, model_->estimator);
   }
 
-  /// What `begin_at_zero` changes.
-  struct Frame {
-    motion::Estimate estimate{};
-    float gyro_bias_rad_s = 0.0F;
-    float zero_rad = 0.0F;
-  };
-  [[nodiscard]] constexpr Frame frame() const noexcept { return {estimate_, gyro_bias_, zero_rad_}; }
-  constexpr void go_back_to(const Frame& frame) noexcept {
-    estimate_ = frame.estimate;
-    gyro_bias_ = frame.gyro_bias_rad_s;
-    zero_rad_ = frame.zero_rad;
-  }
   /// The robot is at 0, 0 and looks along x: an operator confirmed it. [T2 §6.3]
   void begin_at_zero() noexcept {
     if (measurement_.fresh()) {
