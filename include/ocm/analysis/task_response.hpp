@@ -13,8 +13,9 @@
 ///     static_assert(all_schedulable(in_order(std::array{Task{3, 7}, Task{3, 12}, Task{5, 20}})));
 ///
 /// Bounds are exact where all tasks have a level of their own and can be released together, and safe
-/// elsewhere. No heap; recursion only where tasks wait, as deep as they have levels. Cost: O(tasks) a step of
-/// the iteration; Limits says how many, so that it always ends.
+/// elsewhere. No heap; recursion only where tasks wait, as deep as they have levels, up to 16. Of 16 tasks
+/// that wait R_k is calculated, once each; of more, D_k stands in its place, which is safe too. Cost:
+/// O(tasks) a step of the iteration; Limits says how many, so that it always ends.
 #pragma once
 
 #include <algorithm>
@@ -32,16 +33,37 @@ namespace ocm::analysis {
 
 namespace detail {
 
+/// How late what tasks that wait take may come. Found once each: the response of one is found from those of
+/// the more urgent ones, and theirs from those of still more urgent ones.
+class LateWork {
+ public:
+  /// Where that of task k is, or is to be put; nullptr: there is no room for it.
+  [[nodiscard]] constexpr std::int64_t* of(std::size_t k) noexcept {
+    for (std::size_t i = 0; i < size_; ++i)
+      if (tasks_[i] == k) return &ticks_[i];
+    if (size_ == ticks_.size()) return nullptr;
+    tasks_[size_] = k;
+    return &(ticks_[size_++] = unknown);
+  }
+  static constexpr std::int64_t unknown = -1;
+
+ private:
+  static constexpr std::size_t room = 16;
+  std::array<std::int64_t, room> ticks_{};
+  std::array<std::size_t, room> tasks_{};
+  std::size_t size_ = 0;
+};
+
 constexpr Explained response_time(std::span<const Task> tasks, std::size_t index, const Processor& processor,
                                   Limits limits, std::span<std::int64_t> instances,
-                                  std::span<std::int64_t> shares, bool only_verdict) noexcept;
+                                  std::span<std::int64_t> shares, bool only_verdict, LateWork& late) noexcept;
 
 /// One task in its set, on its processor: what delays it.
 class ProcessorDemand {
  public:
-  constexpr ProcessorDemand(std::span<const Task> tasks, std::size_t index,
-                            const Processor& processor) noexcept
-      : tasks_(tasks), index_(index), processor_(processor) {}
+  constexpr ProcessorDemand(std::span<const Task> tasks, std::size_t index, const Processor& processor,
+                            LateWork& late) noexcept
+      : tasks_(tasks), index_(index), processor_(processor), late_(late) {}
 
   [[nodiscard]] constexpr Checked scaled(std::int64_t ticks) const noexcept {
     constexpr std::int64_t million = 1'000'000;
@@ -77,10 +99,17 @@ class ProcessorDemand {
   /// which J is. One that may be late for its deadline is late by that at most, or nothing is promised.
   [[nodiscard]] constexpr Checked lateness(std::size_t k) const noexcept {
     if (!suspends(k)) return jitter(k);
-    const Explained found = response_time(tasks_, k, processor_, {}, {}, {}, false);
-    const Checked latest =
-        Checked{found.reason == Reason::schedulable ? found.response : tasks_[k].due()} - work(k);
-    return std::max(jitter(k).value_or(unbounded), latest.value_or(unbounded));
+    std::int64_t* const place = late_.of(k);
+    if (place != nullptr && *place != LateWork::unknown) return *place;
+    std::int64_t response = tasks_[k].due();
+    if (place != nullptr) {
+      const Explained found = response_time(tasks_, k, processor_, {}, {}, {}, false, late_);
+      if (found.reason == Reason::schedulable) response = found.response;
+    }
+    const std::int64_t latest =
+        std::max(jitter(k).value_or(unbounded), (Checked{response} - work(k)).value_or(unbounded));
+    if (place != nullptr) *place = latest;
+    return latest;
   }
   /// What one release of task k takes from the task: the interrupt; all of it if it goes before.
   [[nodiscard]] constexpr Checked each(std::size_t k) const noexcept {
@@ -180,12 +209,14 @@ class ProcessorDemand {
   std::span<const Task> tasks_;
   std::size_t index_;
   const Processor& processor_;
+  LateWork& late_;
 };
 
 /// Stops at the first instance that is late if `only_verdict`: then there is no response, only a reason.
 constexpr Explained response_time(std::span<const Task> tasks, std::size_t index, const Processor& processor,
                                   Limits limits, std::span<std::int64_t> instances,
-                                  std::span<std::int64_t> shares, bool only_verdict) noexcept {
+                                  std::span<std::int64_t> shares, bool only_verdict,
+                                  LateWork& late) noexcept {
   Explained result;
   if (index >= tasks.size() || !processor.valid()) return result;
   const Task& task = tasks[index];
@@ -193,7 +224,7 @@ constexpr Explained response_time(std::span<const Task> tasks, std::size_t index
   result.largest = first_invalid(tasks);
   if (result.largest != no_index) return result;
 
-  const ProcessorDemand demand{tasks, index, processor};
+  const ProcessorDemand demand{tasks, index, processor, late};
   const Checked cost = demand.cost(index);
   const Checked jitter = demand.jitter(index);
   const Checked blocking = demand.blocking();
@@ -268,7 +299,8 @@ constexpr Explained response_time(std::span<const Task> tasks, std::size_t index
                                                 const Processor& processor = {}, Limits limits = {},
                                                 std::span<std::int64_t> instances = {},
                                                 std::span<std::int64_t> shares = {}) noexcept {
-  return detail::response_time(tasks, index, processor, limits, instances, shares, false);
+  detail::LateWork late;
+  return detail::response_time(tasks, index, processor, limits, instances, shares, false, late);
 }
 
 /// All of them; `results` has room for as many as it has. O(tasks^2) a step.
@@ -289,7 +321,8 @@ template <std::size_t N>
 /// Whether this task meets its deadline, or why it is not known to: sooner done than the response time.
 [[nodiscard]] constexpr Reason verdict(std::span<const Task> tasks, std::size_t index,
                                        const Processor& processor = {}, Limits limits = {}) noexcept {
-  return detail::response_time(tasks, index, processor, limits, {}, {}, true).reason;
+  detail::LateWork late;
+  return detail::response_time(tasks, index, processor, limits, {}, {}, true, late).reason;
 }
 
 /// The first task that is not known to meet its deadline; no_index: all do.
