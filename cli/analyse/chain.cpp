@@ -70,6 +70,11 @@ ChainStudy study_chain(const std::string& file, std::int64_t deadline, const Bus
   ChainStudy study;
   study.entries = read_chain(file);
   study.deadline = deadline;
+  const auto is_on_robot = [](const HopEntry& entry) { return entry.set == "robot"; };
+  if (!rates.empty() && std::none_of(study.entries.begin(), study.entries.end(), is_on_robot))
+    stop_at({{rates.front().place, fmt::format("no hop of {} is on the robot's bus, which it changes", file),
+              "the period in the set's file, or a hop of the set 'robot'"}},
+            file);
   std::map<std::string, Place> places;
   std::vector<std::size_t> members;
   std::vector<Mistake> mistakes;

@@ -586,6 +586,18 @@ act,sampled,2000000,2000,21005000
         found = self.chain(self.HOPS + "estimate,,sampled,2000000,,30000000\nodometry.pose,robot,triggered\n")
         self.assertGreater(found["latency_ns"], 2000000 + 111 * 2000)
 
+    def test_rates_are_of_the_robots_bus(self):
+        """What looks at its own period waits for one of them: 10 ms less with 40 ms in place of 50."""
+        hops = self.HOPS + "estimate,,sampled,2000000,,30000000\ngyroscope,robot,sampled\n"
+        waits = [self.chain(hops, "--rates", f"gyro={period}")["hops"][1]["waits_ns"] for period in ("50ms", "40ms")]
+        self.assertEqual(waits[0] - waits[1], 10_000_000)
+        self.file(BUS + "pose,1,7,1000000000,,\n", "bus.csv")
+        for text in ("pose,bus.csv,sampled\n", "plan,,sampled,5000000,,10000000\n"):
+            out, err = self.run_tool("analyse", "chain", self.file(self.HOPS + text, "chain.csv"), "--rates", "pose=5ms", code=2)
+            self.assertEqual(out, "")
+            self.assertIn("--rates pose=5ms: no hop of ", err)
+            self.assertIn("is on the robot's bus, which it changes\n    the period in the set's file", err)
+
     def test_mistakes(self):
         self.file(BUS + "pose,1,7,1000000000,,\n", "bus.csv")
         for text, *words in (("a,bus.csv,sampled\n", "chain.csv:2", "'a' is not in bus.csv"),
