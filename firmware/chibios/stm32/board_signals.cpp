@@ -15,7 +15,8 @@ namespace {
 
 constinit SignalPins signals{};
 constinit ConnectDetector connect{};
-constinit void (*prog_interrupt)() = nullptr;  // of who shares the programming UART
+using Interrupt = void (*)();
+constinit Interrupt prog_interrupt = nullptr;  // of who shares the programming UART
 
 // The same on both chips. [RM0008 table 63, RM0090 table 62]
 constexpr std::uint32_t lines_9_to_5_number = 23;
