@@ -9,6 +9,7 @@ import sys
 sys.path.insert(0, os.path.join(os.environ["OCM_SOURCE_DIR"], "tests", "tool", "verbs"))
 from harness import SOURCE, Case, main  # noqa: E402
 from realtime import RealTime  # noqa: E402
+import waiting  # noqa: E402
 
 MODEL = os.path.join(SOURCE, "examples", "6_model.c")
 LOOP = os.path.join(SOURCE, "examples", "7_loop.c")
@@ -36,7 +37,7 @@ class OnTheRobot(Case):
         return ["qemu-arm-static", program] if compiler == "Cortex-A8" else [program]
 
     def launch(self, command):
-        process = subprocess.Popen(command, env=self.environment, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        process = waiting.Program(command, env=self.environment, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
         self._started.append(process)
         return process
 

@@ -85,9 +85,9 @@ class Robots(Case):
         """Listens into a file: what is not read must not hold the listener up. `recorded` ends it."""
         path = f"{self.folder}/{name}.json"
         with open(path, "wb") as file:
-            listener = subprocess.Popen([os.environ["AMIROCTL"], "--bus", self.bus(name), "listen", "--json", *arguments],
-                                        env=self.environment, stdin=subprocess.DEVNULL, stdout=file,
-                                        stderr=subprocess.PIPE, text=True)
+            listener = waiting.Program([os.environ["AMIROCTL"], "--bus", self.bus(name), "listen", "--json", *arguments],
+                                       env=self.environment, stdin=subprocess.DEVNULL, stdout=file,
+                                       stderr=subprocess.PIPE, text=True)
         self._started.append(listener)
         self.assertIn("bus: sim", listener.stderr.readline())
         time.sleep(0.1)
