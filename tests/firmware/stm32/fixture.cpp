@@ -6,6 +6,7 @@
 #include <sys/mman.h>
 
 #include "firmware/chibios/fault.hpp"
+#include "firmware/chibios/port.hpp"
 
 NVIC_Type played_nvic;
 SCB_Type played_scb;
@@ -91,6 +92,15 @@ void bring_to_rest() noexcept {
 void rest_and_restart(ResetCause cause, std::uint32_t /*where*/) noexcept {
   end("rest and restart " + std::to_string(static_cast<int>(cause)));
 }
+base::Time Port::now() noexcept {
+  return chip->now;
+}
+bool Signal::wait(base::Duration timeout) noexcept {
+  if (std::exchange(raised_, false)) return true;
+  if (chip->waits_left-- == 0) end("waits");
+  chip->now += timeout;
+  return false;
+}
 ResetCause take_noted_cause() noexcept {
   return std::exchange(chip->noted, ResetCause::unknown);
 }
@@ -108,6 +118,9 @@ void NVIC_SystemReset() {
 void nvicEnableVector(std::uint32_t number, std::uint32_t priority) {
   NVIC->ISER[number / 32] |= 1U << number % 32;
   chip->priorities.at(number) = priority;
+}
+void rccResetCAN1() {
+  ++chip->resets;
 }
 void chSysInit() {
   say("kernel");

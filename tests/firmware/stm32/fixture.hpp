@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "ocm/base/time.hpp"
+
 #include "firmware/chibios/restart_note.hpp"
 
 namespace ocm::stm32_tests {
@@ -25,6 +27,11 @@ struct Chip {
   std::vector<msg_t> answers;
   std::vector<std::uint8_t> received;
   i2cflags_t errors = 0;
+
+  // CAN
+  int resets = 0;         ///< of the controller
+  base::Time now{};       ///< each wait of a thread takes as long as it may
+  int waits_left = 1000;  ///< then the program of the test ends: it would wait for ever
 
   [[nodiscard]] bool enabled(std::uint32_t interrupt) const {
     return (NVIC->ISER[interrupt / 32] & 1U << interrupt % 32) != 0;
@@ -45,6 +52,9 @@ template <class Function>
 /// The handlers in the table of vectors. [ChibiOS vectors.c: by the offset of their place]
 extern "C" {
 void Vector40();  // WWDG
+void Vector8C();  // CAN1 TX
+void Vector90();  // CAN1 RX0
+void Vector98();  // CAN1 SCE
 void Vector9C();  // EXTI lines 9 to 5
 void VectorE0();  // EXTI lines 15 to 10
 void VectorD4();  // USART1

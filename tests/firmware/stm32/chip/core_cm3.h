@@ -1,4 +1,5 @@
-/* The core's registers and instructions, for the vendor's header of a chip: the real ones are at addresses that sanitizers use. */
+/* The core's registers and instructions, for the vendor's header of a chip: the real ones are at addresses
+ * that sanitizers use. */
 #pragma once
 
 #include <stdint.h>

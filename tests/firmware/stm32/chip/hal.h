@@ -15,6 +15,12 @@ extern DBGMCU_TypeDef played_dbgmcu;
 
 #define STM32_USART1_NUMBER 37 /* [RM0008 table 63, RM0090 table 62] */
 #define STM32_USART1_HANDLER VectorD4
+#define STM32_CAN1_TX_NUMBER 19
+#define STM32_CAN1_TX_HANDLER Vector8C
+#define STM32_CAN1_RX0_NUMBER 20
+#define STM32_CAN1_RX0_HANDLER Vector90
+#define STM32_CAN1_SCE_NUMBER 22
+#define STM32_CAN1_SCE_HANDLER Vector98
 #define OSAL_IRQ_HANDLER(name) void name(void)
 #define PORT_FAST_IRQ_HANDLER(name) void name(void)
 #define OSAL_IRQ_PROLOGUE()
@@ -27,6 +33,8 @@ void nvicEnableVector(uint32_t number, uint32_t priority);
 #define rccEnableTIM2(low_power) rccEnableAPB1(RCC_APB1ENR_TIM2EN, low_power)
 #define rccEnableTIM3(low_power) rccEnableAPB1(RCC_APB1ENR_TIM3EN, low_power)
 #define rccEnableTIM4(low_power) rccEnableAPB1(RCC_APB1ENR_TIM4EN, low_power)
+#define rccEnableCAN1(low_power) rccEnableAPB1(RCC_APB1ENR_CAN1EN, low_power)
+void rccResetCAN1(void);
 #define rccEnableUSART1(low_power) rccEnableAPB2(RCC_APB2ENR_USART1EN, low_power)
 #define rccEnablePWRInterface(low_power) rccEnableAPB1(RCC_APB1ENR_PWREN, low_power)
 
@@ -72,14 +80,15 @@ typedef struct {
   i2cdutycycle_t duty_cycle;
 } I2CConfig;
 typedef struct {
-  const I2CConfig* config;  /* nullptr: stopped */
+  const I2CConfig* config; /* nullptr: stopped */
 } I2CDriver;
 void i2cStart(I2CDriver* driver, const I2CConfig* config);
 void i2cStop(I2CDriver* driver);
 i2cflags_t i2cGetErrors(I2CDriver* driver);
-msg_t i2cMasterTransmitTimeout(I2CDriver* driver, uint8_t address, const uint8_t* out, size_t out_size, uint8_t* in,
-                               size_t in_size, systime_t timeout);
-msg_t i2cMasterReceiveTimeout(I2CDriver* driver, uint8_t address, uint8_t* in, size_t in_size, systime_t timeout);
+msg_t i2cMasterTransmitTimeout(I2CDriver* driver, uint8_t address, const uint8_t* out, size_t out_size,
+                               uint8_t* in, size_t in_size, systime_t timeout);
+msg_t i2cMasterReceiveTimeout(I2CDriver* driver, uint8_t address, uint8_t* in, size_t in_size,
+                              systime_t timeout);
 
 typedef struct {
   void (*end)(void);
