@@ -62,9 +62,9 @@ void BehaviourWatch::take(const can::Received& received) {
       commanded_ = fmt::format("{} {}", command->name, can::to_text(received.frame).view());
     replaced_ = replaced_ || (behaviour != nullptr && !rest);
   }
-  // What it says after that is of the other one.
-  if (replaced_ || !sensor_.active_in(index_, received.frame)) return;
+  if (!sensor_.active_in(index_, received.frame)) return;
   last_ = Clock::now();
+  if (replaced_) return;  // what it says after that is of the other one
   const auto& data = received.frame.data;
   const std::int64_t active = sensor_.active().raw(data);
   const std::int64_t ended = sensor_.ended().raw(data);

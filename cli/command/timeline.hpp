@@ -63,6 +63,8 @@ class Timeline {
     stood_still_ = {};
     awake_ = Clock::now();
   }
+  /// A board has refused something, which was said.
+  [[nodiscard]] bool has_refused() const { return refused_; }
   /// What is sent next has a board drive by itself, which no watchdog ends.
   void expect_motion() { outgoing_.otherwise_after_the_next(still_travelling); }
   /// The caller says itself that the board is silent: finish() does not.

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <chrono>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -99,13 +100,20 @@ class Travel {
   [[nodiscard]] int carry_out(const can::Frame& set_point) {
     if (!listen_first()) return exit_code_after_interrupt(exit_success);
     try {
-      begin(set_point);
-      follow();
+      if (sees()) {
+        begin(set_point);
+        follow();
+      }
     } catch (...) {  // the error is said, or main says it
       give_up();
       throw;
     }
     const bool taken = end();
+    if (!begun_ && silent_) fail(not_begun());
+    if (!begun_ && goes_on_) {  // refused, which was said
+      remark("travel: not begun: nothing would tell how far it is");
+      return exit_failure;
+    }
     if (watch_.is_replaced() && goes_on_) fail(replaced());
     if (!goes_on_) return exit_code_after_interrupt(exit_success);
     if (!taken) return exit_failure;  // a board has refused it, which was said
@@ -118,16 +126,40 @@ class Travel {
   /// As long as it takes to hear other programs, and the sensor, if one has asked for it already. False: a
   /// signal came first.
   [[nodiscard]] bool listen_first() {
-    if (!(options_->force ? look(client::listen_before_hold) : timeline_.listen_first())) return false;
+    if (!(options_->force ? timeline_.wait(Clock::now() + client::listen_before_hold)
+                          : timeline_.listen_first()))
+      return false;
     timeline_.expect_no_other();
     return true;
   }
 
-  void begin(const can::Frame& set_point) {
-    client::Command begin;
+  /// Whether samples come that tell of the travel: without them a robot would move unseen. False: they are
+  /// refused, the board is silent, or a signal comes. A program that was stopped meanwhile leaves before the
+  /// set point: nothing is forgiven here.
+  [[nodiscard]] bool sees() {
     asked_ = !watch_.heard() || timeline_.has_asked();
-    if (asked_) begin.frames.push_back(ask());
-    begin.frames.push_back(set_point);
+    for (int asks = 0; asked_ && asks <= most_asks; ++asks) {
+      client::Command first;
+      first.frames = {ask()};
+      const auto since = Clock::now();
+      timeline_.carry_out_once(first);
+      while (watch_.last() <= since && Clock::now() - since < longest_silence) {
+        goes_on_ = timeline_.wait(Clock::now() + std::chrono::milliseconds{10});
+        if (!goes_on_ || timeline_.has_refused()) return false;
+      }
+      if (watch_.last() > since) return true;
+    }
+    silent_ = asked_;
+    return !silent_;
+  }
+
+  void begin(const can::Frame& set_point) {
+    timeline_.expect_no_other();  // that began meanwhile
+    if (watch_.is_replaced() && !options_->force)
+      fail({fmt::format("travel: another program has just begun {}", watch_.commanded()),
+            "wait for its end, or `amiroctl behave none`; --force begins all the same, and ends it"});
+    client::Command begin;
+    begin.frames = {set_point};
     watch_.begin();
     timeline_.expect_motion();
     begun_ = Clock::now();
@@ -157,13 +189,15 @@ class Travel {
 
   /// Whether the boards took all.
   [[nodiscard]] bool end() {
-    together_ =
-        watch_.is_replaced() && !options_->force && Clock::now() - begun_ < client::listen_before_hold;
+    together_ = begun_ && watch_.is_replaced() && !options_->force &&
+                Clock::now() - *begun_ < client::listen_before_hold;
     client::Command end;
     // Samples of before it was heard may have said that it is not active: it may begin after them.
     const bool is_over = watch_.is_replaced() || (watch_.over() && watch_.was_active());
-    if (!is_over || together_) end.frames.push_back(client::set_point(*topic_, {}, options_->priority));
-    if (asked_) end.frames.push_back(protocol::stop(watch_.sensor().id, watch_.sensor().priority));
+    if (begun_ && (!is_over || together_))
+      end.frames.push_back(client::set_point(*topic_, {}, options_->priority));
+    const bool streams = asked_ && (begun_ || !timeline_.has_refused());
+    if (streams) end.frames.push_back(protocol::stop(watch_.sensor().id, watch_.sensor().priority));
     timeline_.forgive_a_stop();  // an end is never too late
     timeline_.carry_out_once(end);
     if (silent_) timeline_.leave_silence_to_caller();
@@ -174,10 +208,11 @@ class Travel {
   void give_up() {
     if (bus_->state() == transport::BusState::closed) return;
     client::Command end;
-    end.frames = {client::set_point(*topic_, {}, options_->priority)};
+    if (begun_) end.frames = {client::set_point(*topic_, {}, options_->priority)};
+    if (asked_) end.frames.push_back(protocol::stop(watch_.sensor().id, watch_.sensor().priority));
     timeline_.forgive_a_stop();
     timeline_.carry_out_once(end);
-    if (timeline_.finish()) remark("travel: zeros were sent, which end it");
+    if (timeline_.finish() && begun_) remark("travel: zeros were sent, which end it");
   }
 
   [[nodiscard]] transport::Failure replaced() const {
@@ -188,6 +223,17 @@ class Travel {
                 : "it was not ended: the robot does what came last"};
   }
 
+  [[nodiscard]] transport::Failure not_begun() const {
+    return {fmt::format("travel: no {} within {}, so the travel was not begun", watch_.sensor().name,
+                        words::to_text((most_asks + 1) * longest_silence)),
+            is_it_there() + (options_->no_confirm ? "; with --no-confirm no refusal is heard" : "")};
+  }
+
+  [[nodiscard]] std::string is_it_there() const {
+    return fmt::format("is board {} powered and on {}? See `amiroctl doctor`",
+                       catalogue_->board_name(*topic_), bus_->name());
+  }
+
   [[nodiscard]] transport::Failure not_arrived() const {
     const auto board = catalogue_->board_name(*topic_);
     if (silent_) {
@@ -196,7 +242,7 @@ class Travel {
                                                 board, time, still_travelling)
                                   : fmt::format("travel: no {} within {}, so the travel was ended",
                                                 watch_.sensor().name, time),
-              fmt::format("is board {} powered and on {}? See `amiroctl doctor`", board, bus_->name())};
+              is_it_there()};
     }
     if (!watch_.was_active()) return {fmt::format("travel: {} has not begun it", board), remedy_for({})};
     return {fmt::format("travel: ended by {}: {}{}; {} are left", board, watch_.ended(),
@@ -223,10 +269,10 @@ class Travel {
   BehaviourWatch watch_;
   std::unique_ptr<transport::Bus> bus_;
   Timeline timeline_;
-  Clock::time_point begun_;
-  bool asked_ = false;     ///< for what the board says of it
-  bool goes_on_ = true;    ///< no signal came
-  bool silent_ = false;    ///< the board does not answer
+  std::optional<Clock::time_point> begun_;  ///< when the set point was sent
+  bool asked_ = false;                      ///< for what the board says of it
+  bool goes_on_ = true;                     ///< no signal came
+  bool silent_ = false;                     ///< the board does not answer
   bool together_ = false;  ///< another began in the same moment: neither has heard the other, so both end
 };
 

@@ -41,6 +41,8 @@ class TwoCommanders(Drive):
             self.assertRegex(err, rf"amiroctl: {command[0]}: {OTHER}, [12] set points? within 150ms\n", command)
             self.assertIn("--force", err)
             self.assertNotIn("MAY STILL MOVE", err)
+        # What moves nothing is no second drive.
+        self.run_tool("run", self.script("0s led 1 red\n200ms led 1 blue\n300ms publish gyro 1s\n"))
         _, err = self.interrupt(first)
         self.assertEqual(first.returncode, 130)
         self.assertNotIn("another program", err)  # none of the refused ones has sent a set point
@@ -214,7 +216,8 @@ class Alarm(WithAdapter, Drive):
     def test_where_the_adapter_goes_while_the_robot_moves(self):
         for command, begun, end in ((("drive", "5cm/s", "--for", "60s"), "201#50C3", "until its watchdog stops it"),
                                     (("travel", "30cm"), "20B#", "to the end of its way")):
-            adapter = self.adapter()
+            asked, _ = self.run_tool("publish", "behaviour", "50ms", "--dry-run")
+            adapter = self.adapter(script={asked.strip(): ["t60D80000000000000000\r"]})  # the board does nothing by itself
             tool = self.start("--bus", f"slcan:{adapter.path}", *command)
             waiting.until(lambda: any(frame.startswith(begun) for frame in adapter.frames), "it moves")
             adapter.unplug()

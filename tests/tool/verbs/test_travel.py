@@ -89,17 +89,66 @@ class Travel(Case):
     def test_samples_that_say_that_it_is_not_active_are_no_end(self):
         # Of before the board heard it, or of one that begins late: whatever they say, none is left behind.
         self.start_sim("--without", "di_wheel_drive")
-        listener = self.listen("travel", "--timeout", "20s")
+        listener = self.listen("travel", "behaviour", "--commands", "--timeout", "20s")
         others = self.start("send", "--stdin", stdin=subprocess.PIPE)
         travel = self.start("travel", "1m", "--no-confirm")
-        listener.stdout.readline()
-        for _ in range(10):
+
+        def say_that_it_is_not():
             others.stdin.write("60D#0000000000000000\n")
             others.stdin.flush()
+        for line in listener.stdout:  # each question is answered
+            if '"topic":"travel"' in line:
+                break
+            say_that_it_is_not()
+        else:
+            self.fail("it did not begin")
+        for _ in range(10):
+            say_that_it_is_not()
         _, err = travel.communicate(timeout=20)
         self.assertEqual(travel.returncode, 1, err)
         self.assertIn("di_wheel_drive has not begun it", err)
-        self.assertIn('"0000000000000000"', listener.stdout.readline())
+        self.assertIn('"data":"0000000000000000"', next(line for line in listener.stdout if '"topic":"travel"' in line))
+
+    def test_one_that_was_stopped_before_it_began_does_not_begin(self):
+        """It asks for samples, and is stopped meanwhile; the answer that waits for it is of long ago."""
+        self.start_sim("--without", "di_wheel_drive")
+        listener = self.listen("travel", "behaviour", "--commands", "--timeout", "30s")
+        travel = self.start("travel", "1m", "--no-confirm")
+        next(line for line in listener.stdout if '"mode":"publish"' in line)
+        travel.send_signal(signal.SIGSTOP)
+        self.run_tool("send", "60D#0000000000000000")
+        # Longer than a board goes on without a set point.
+        time.sleep(0.7)  # what is tested is that this time has passed
+        travel.send_signal(signal.SIGCONT)
+        _, err = travel.communicate(timeout=20)
+        self.assertEqual(travel.returncode, 1, err)
+        self.assertRegex(err, r"travel: this program did not run for \d+ms, so no further command is sent")
+        out, _ = self.interrupt(listener)
+        sent = [sample["data"] for sample in self.objects(out) if sample["topic"] == "travel"]
+        self.assertLessEqual(set(sent), {"0000000000000000"})
+
+    def test_force_beside_what_is_held_and_told_by_no_sample(self):
+        self.start_sim()
+        follow = self.start("send", "--stdin", "--timed", stdin=subprocess.PIPE)
+        follow.stdin.write("".join(f"({n / 10:.6f}) sim 20C#E803\n" for n in range(40)))
+        follow.stdin.close()
+        listener = self.listen("follow", "--timeout", "20s")
+        listener.stdout.readline()
+        self.interrupt(listener)
+        _, err = self.run_tool("travel", "10cm", code=1)
+        self.assertRegex(err, "drives the wheels by itself|another program has just begun follow 20C#E803")
+        _, err = self.run_tool("travel", "10cm", "--force", code=1)
+        self.assertIn("replaced by another program, follow 20C#E803", err)  # which holds on
+
+    def test_without_what_tells_of_it_it_does_not_begin(self):
+        self.start_sim()
+        listener = self.listen("travel", "--timeout", "30s")
+        self.run_tool("publish", "mag", "900us")
+        _, err = self.run_tool("travel", "30cm", code=1)
+        self.assertEqual(err.count("di_wheel_drive refuses behaviour"), 1, err)
+        self.assertTrue(err.endswith("travel: not begun: nothing would tell how far it is\n"), err)
+        out, _ = self.interrupt(listener)
+        self.assertEqual(out, "")
 
     def test_a_stop_ends_it_and_so_does_a_set_point(self):
         self.start_sim()
@@ -217,7 +266,7 @@ class Travel(Case):
         begin = time.monotonic()
         _, err = self.run_tool("travel", "10cm", code=1)
         self.assertGreater(time.monotonic() - begin, 1.2)  # four times 300 ms, counted from each question
-        self.assertIn("no behaviour within 1.2s", err)
+        self.assertIn("no behaviour within 1.2s, so the travel was not begun", err)
         self.assertIn("di_wheel_drive", err)
         self.assertNotIn("has not answered", err)  # which says the same
 
