@@ -143,7 +143,7 @@ class KeyDrive {
     std::string going{forward[direction.forward + 1]};
     if (direction.left != 0) going += (going.empty() ? "" : ", ") + std::string{turning[direction.left + 1]};
     if (going.empty()) going = note_.empty() ? "rests" : note_;
-    std::string line = fmt::format("{} {}  {}", forward_.text(), turning_.text(), going);
+    std::string line = fmt::format("{} {}  {}", forward_.shown(), turning_.shown(), going);
     const std::size_t columns = terminal_size(STDOUT_FILENO).columns;
     const std::string_view help = "   arrows drive, space stops, + - speed, q quits";
     if (keys == Keys::read && line.size() + help.size() < columns) line += help;
@@ -187,6 +187,7 @@ int drive_by_keys(Session& session, const KeyDriveOptions& options) {
     timeline.rest();
     const bool is_gone = !quit && (interrupted() == 0 || interrupted() == SIGHUP);  // the terminal
     if (!is_gone) drive.show_end();
+    if (is_gone && interrupted() == 0) remark("drive: the terminal is gone");
   }
   const bool fine = timeline.finish();
   return exit_code_after_interrupt(quit && fine ? exit_success : exit_failure);

@@ -57,7 +57,7 @@ void PadDrive::tell(const PadState& state, Wanted wanted) {
   std::string text = steering_.waits_for_release(state) ? "rests: release the shoulder button first"
                      : !state.dead_man                  ? "rests: hold a shoulder button to drive"
                      : wanted.rests()                   ? "rests"
-                                      : forward_.text(wanted.forward) + ' ' + turning_.text(wanted.left);
+                                      : forward_.shown(wanted.forward) + ' ' + turning_.shown(wanted.left);
   if (text != told_) show_(told_ = std::move(text));
 }
 

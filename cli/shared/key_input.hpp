@@ -33,12 +33,14 @@ class KeyInput {
     std::memmove(buffer_, buffer_ + given_, kept_);
     given_ = 0;
     keep_keys();
-    if (!has_keys()) {
+    const short seen = seen_now();
+    if (seen == 0) {
       if (kept_ != 0 && ++looks_ == looks_for_the_end) given_ = std::exchange(kept_, 0);
       return std::string_view{buffer_, given_};
     }
     const ssize_t count = ::read(STDIN_FILENO, buffer_ + kept_, sizeof buffer_ - kept_);
     if (count < 0 && errno != EAGAIN && errno != EINTR) return std::nullopt;  // closed: EIO, or SIGHUP
+    if (count == 0 && (seen & POLLHUP) != 0) return std::nullopt;  // what a closed one may say, too
     if (count > 0) {
       const std::size_t all = kept_ + static_cast<std::size_t>(count);
       kept_ = begun({buffer_, all});
@@ -64,9 +66,10 @@ class KeyInput {
     const pid_t owner = ::tcgetpgrp(STDIN_FILENO);
     if (owner == -1 || owner == ::getpgrp()) (void)take_keys();
   }
-  [[nodiscard]] static bool has_keys() noexcept {
+  /// What can be seen of the terminal without waiting; 0: nothing was pressed.
+  [[nodiscard]] static short seen_now() noexcept {
     pollfd input{STDIN_FILENO, POLLIN, 0};
-    return ::poll(&input, 1, 0) != 0;
+    return ::poll(&input, 1, 0) == 1 ? input.revents : short{0};
   }
   /// How many bytes at the end are the beginning of a sequence.
   [[nodiscard]] static std::size_t begun(std::string_view text) noexcept {

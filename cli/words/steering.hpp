@@ -46,10 +46,19 @@ class KeySpeed {
   [[nodiscard]] int steps() const noexcept { return steps_; }
   /// A part of it, -1 to 1, as it is typed.
   [[nodiscard]] std::string text(double part = 1) const {
-    return fmt::format("{:.3g}{}", part * number_ * std::pow(1.25, steps_), unit_);
+    const bool typed = steps_ == 0 && std::abs(part) == 1;
+    return typed ? fmt::format("{}{}", value(part), unit_) : fmt::format("{:.6g}{}", value(part), unit_);
+  }
+  /// In three digits, or as many as are before the point.
+  [[nodiscard]] std::string shown(double part = 1) const {
+    const double speed = value(part);
+    return std::abs(speed) < 999.5 ? fmt::format("{:.3g}{}", speed, unit_)
+                                   : fmt::format("{:.0f}{}", speed, unit_);
   }
 
  private:
+  [[nodiscard]] double value(double part) const { return part * number_ * std::pow(1.25, steps_); }
+
   double number_ = 0;
   std::string unit_;
   int steps_ = 0;

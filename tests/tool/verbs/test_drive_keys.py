@@ -3,6 +3,7 @@
 import fcntl
 import json
 import os
+import pathlib
 import pty
 import select
 import signal
@@ -75,6 +76,9 @@ class Keys(harness.Case):
         before = self.processor_time(process)
         time.sleep(1)  # over which its processor time is taken
         self.assertLess(self.processor_time(process) - before, 0.3)  # without a wait it is all there is
+        while select.select([self.primary], [], [], 0)[0]:
+            self.shown += os.read(self.primary, 4096)
+        self.assertNotIn(b"\x1b[K", self.shown)  # nothing has changed, so that nothing is drawn
         os.write(self.primary, b"q")
         self.set_points(process)
 
@@ -159,6 +163,17 @@ class Keys(harness.Case):
         points, _ = self.set_points(process)
         self.assertEqual({data[:8] for _, data in points if data != REST}, {"80FC0A00"})  # 720,000 um/s
 
+    def test_speeds_up_to_the_limits_of_the_spec(self):
+        """1 m/s and 28.985507 rad/s; what is typed is sent as it is."""
+        process = self.drive("100cm/s", "28.9rad/s")
+        os.write(self.primary, LEFT)
+        self.shows(b"left")
+        os.write(self.primary, b"q")
+        process.communicate(timeout=30)
+        for speeds in (("101cm/s",), ("10cm/s", "29rad/s")):
+            _, err = self.run_tool("drive", "--keys", *speeds, code=2)
+            self.assertIn(f"drive: --keys: '{speeds[-1]}' is out of range", err)
+
     def test_a_robot_that_goes_back_more_slowly(self):
         with open(os.path.join(harness.SOURCE, "spec", "topics.json"), encoding="utf-8") as file:
             spec = json.load(file)
@@ -194,6 +209,13 @@ class Keys(harness.Case):
                 points, _ = self.set_points(process, 128 + number)
                 self.assertEqual(termios.tcgetattr(self.secondary), self.before)
                 self.assertEqual(points[-1][1], REST)
+                # Its last line stays, but where the terminal is said to be gone.
+                if number != signal.SIGHUP:
+                    self.shows(b"  rests\r\n")
+                else:
+                    while select.select([self.primary], [], [], 0)[0]:
+                        self.shown += os.read(self.primary, 4096)
+                    self.assertNotIn(b"  rests\r\n", self.shown)
                 self.close()
 
     def test_a_terminal_that_is_gone(self):
@@ -237,6 +259,21 @@ class Keys(harness.Case):
         self.assertNotIn("\r", lines())
         self.assertGreaterEqual(lines().count("\n"), 3)
         self.assertTrue(lines().endswith("rests\n"), lines())
+
+    def test_a_terminal_that_is_gone_beside_a_file(self):
+        """It is not told by a signal, and its output can still be written."""
+        with open(os.path.join(self.folder, "keys.txt"), "wb") as file:
+            process = self.drive(stdout=file)
+        harness.waiting.until(lambda: os.path.getsize(file.name), "its first line")
+        os.write(self.primary, UP)
+        harness.waiting.until(lambda: "forward" in pathlib.Path(file.name).read_text(encoding="utf-8"), "that it drives")
+        self.close()
+        _, said = process.communicate(timeout=30)
+        self.assertEqual(process.returncode, 1)
+        self.assertTrue(said.endswith("drive: the terminal is gone\n"), said)
+        self.settle()
+        out, _ = self.interrupt(self.listener)
+        self.assertEqual(self.objects(out)[-1]["data"], REST)
 
     def test_another_commander(self):
         other = self.start("drive", "5cm/s")

@@ -141,9 +141,16 @@ TEST_CASE("steering: speeds") {
   CHECK(speed.text() == "8cm/s");
   speed.change(100);
   CHECK(speed.steps() == KeySpeed::most_steps);
-  CHECK(speed.text() == "146cm/s");  // 14 times as fast
+  CHECK(speed.text() == "145.519cm/s");  // 14 times as fast
+  CHECK(speed.shown() == "146cm/s");
+  CHECK(speed.shown(-0.5) == "-72.8cm/s");
   speed.change(-100);
-  CHECK(speed.text() == "0.687cm/s");
+  CHECK(speed.text() == "0.687195cm/s");
+  CHECK(speed.shown() == "0.687cm/s");
+  for (const auto typed : {"28.9855rad/s", "28.985507rad/s", "1661deg/s"})
+    CHECK(KeySpeed::parse(typed)->text() == typed);
+  CHECK(KeySpeed::parse("1661deg/s")->shown() == "1661deg/s");
+  CHECK(KeySpeed::parse("999.6deg/s")->shown() == "1000deg/s");
   for (const auto bad : {"", "fast", "5", "0cm/s", "-5cm/s", "1e999m/s"})
     CHECK_FALSE(KeySpeed::parse(bad).ok());
 }
