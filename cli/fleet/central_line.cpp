@@ -252,7 +252,7 @@ std::vector<unsigned> CentralLine::connect(const std::vector<std::string>& names
     if (robot(wanted[i]).address != meant[i])
       fail({fmt::format("{}: another program has looked for robots, and the list has changed", verb_),
             "say it again"});
-  std::erase_if(wanted, [this](unsigned index) { return !robot(index).linked; });
+  unreached_ = std::erase_if(wanted, [this](unsigned index) { return !robot(index).linked; });
   if (wanted.empty()) fail({fmt::format("{}: no robot could be connected", verb_), "are they near enough?"});
   const base::Time begin = now();
   (void)wait(first_whole_word, [&] {

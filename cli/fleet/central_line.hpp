@@ -62,6 +62,8 @@ class CentralLine {
   /// Links to the robots that are meant, by name, address or index; `all` or nothing: to all that there are.
   /// One that is not there ends the command; one of several that cannot be reached is reported.
   std::vector<unsigned> connect(const std::vector<std::string>& names);
+  /// Of those: how many could not be reached.
+  [[nodiscard]] std::size_t unreached() const noexcept { return unreached_; }
   /// Asks those of these robots that were connected before, by another program, for their handshakes, and
   /// waits for a moment. A robot that does not know the question stays without one.
   void introduce(const std::vector<unsigned>& robots);
@@ -86,6 +88,7 @@ class CentralLine {
 
   std::string verb_;
   std::optional<base::Duration> scan_;
+  std::size_t unreached_ = 0;
   std::unique_ptr<LineEnd> end_;
 };
 

@@ -32,6 +32,10 @@ void run(std::string_view verb, const PauseOptions& options, bool paused, int& e
                : fmt::format("{}: {} {}", verb, name, paused ? "sends updates still" : "sends no updates"));
     exit_code = exit_failure;
   }
+  if (line.unreached() != 0) {  // connect() has said why
+    remark(fmt::format("{}: {} not reached", verb, counted(line.unreached(), "robot")));
+    exit_code = exit_failure;
+  }
 }
 
 void declare(Verb verb, std::string_view description, std::string_view examples, bool paused,

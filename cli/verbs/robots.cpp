@@ -36,7 +36,7 @@ void print_table(const fleet::CentralLine& line, const std::vector<Peer>& peers)
   std::size_t width = 5;
   for (const Peer& peer : peers) width = std::max(width, peer.name.size());
   fmt::print("{:<{}}  {:<5}  {:<12}  {:<9}  {:>16}  {:>7}\n", "ROBOT", width, "INDEX", "ADDRESS", "STATE",
-             "X Y DEG [cm]", "QUALITY");
+             "X Y [cm] DEG", "QUALITY");
   for (const Peer& peer : peers) {
     const RobotNow robot = line.robot(peer.index);
     fmt::print("{:<{}}  {:<5}  {:<12}  {:<9}  {:>16}  {:>7}\n", peer.name, width, peer.index, peer.address,
@@ -68,11 +68,11 @@ void declare_robots(Verb verb, Session&, int&) {
   verb.describe("mappers behind a central: where they are, and how their links are", mapper_group,
                 "  amiroctl robots\n"
                 "  amiroctl robots --json | jq -r .robot\n"
-                "  amiroctl robots --list                     without a link to any of them\n"
+                "  amiroctl robots --list                     without a new link to any of them\n"
                 "  amiroctl robots --central /dev/ttyACM0");
   const auto options = std::make_shared<RobotsOptions>();
   verb.add_flag("--json", options->json, "an object a robot");
-  verb.add_flag("--list", options->list, "those that advertise; connect to none");
+  verb.add_flag("--list", options->list, "those that advertise; makes no new link");
   add_lasting(verb, "--listen,--watch", options->listen, "how long to listen once all are connected")
       .formerly("--watch");
   fleet::add_line_options(verb, options->line);

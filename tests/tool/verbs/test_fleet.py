@@ -55,8 +55,11 @@ class Robots(Line):
         self.assertEqual([json.loads(line)["body"] is None for line in out.splitlines()], [True, False])
 
     def test_a_list_connects_no_robot(self):
-        out, _ = self.tool("robots", "--list")
-        self.assertRegex(out, r"Arduino +1 +C00000000001 +no link")
+        out, err = self.tool("robots", "--list")
+        self.assertEqual((out, err), (
+            "ROBOT    INDEX  ADDRESS       STATE          X Y [cm] DEG  QUALITY\n"
+            "AVR      0      C00000000000  no link                   -        -\n"
+            "Arduino  1      C00000000001  no link                   -        -\n", ""))
         self.assertFalse(self.avr.linked)
 
     def test_a_program_that_died_left_the_central_in_data_mode(self):
@@ -79,9 +82,13 @@ class Robots(Line):
     def test_a_robot_that_cannot_be_reached_is_told_and_the_others_are_shown(self):
         self.arduino.reachable = False
         out, err = self.tool("robots")
-        self.assertIn("no link to 1", err)
+        self.assertEqual(err, "robots: the central refuses Arduino: no link to 1\n")
         self.assertRegex(out, r"AVR .* idle")
         self.assertRegex(out, r"Arduino .* no link")
+        # The only one that is meant: that is a failure.
+        out, err = self.tool("goto", "Arduino", "0", "0", code=1)
+        self.assertEqual((out, err), ("", "amiroctl: goto: the central refuses Arduino: no link to 1\n"
+                                          "          is it near enough? `amiroctl robots` lists robots\n"))
 
     def test_a_central_that_does_not_answer(self):
         self.central.mute = True
@@ -268,7 +275,7 @@ class Goto(Line):
 
 class Pause(Line):
     def test_pauses_and_goes_on(self):
-        self.assertEqual(self.tool("pause", "AVR")[0], "AVR: paused\n")
+        self.assertEqual(self.tool("pause", "AVR", "AVR"), ("AVR: paused\n", ""))  # named twice it is one
         self.assertTrue(self.avr.paused)
         self.assertFalse(self.arduino.paused)
         # It says where it came to, for it goes on while it drives; then it is paused again.
@@ -278,6 +285,14 @@ class Pause(Line):
         self.assertRegex(self.tool("robots", "--listen", "1s")[0], r"AVR .* paused")
         self.assertEqual(self.tool("unpause", "all")[0], "AVR: goes on\nArduino: goes on\n")
         self.assertFalse(self.avr.paused)
+
+    def test_a_robot_that_cannot_be_reached_is_a_failure_and_the_others_are_held(self):
+        self.arduino.reachable = False
+        for words in (["AVR", "Arduino"], ["all"]):
+            self.assertEqual(self.tool("pause", *words, code=1), ("AVR: paused\n", "pause: the central refuses Arduino: no link to 1\npause: 1 robot not reached\n"))
+            self.assertTrue(self.avr.paused)
+            self.assertEqual(self.tool("unpause", *words, code=1), ("AVR: goes on\n", "unpause: the central refuses Arduino: no link to 1\nunpause: 1 robot not reached\n"))
+        self.assertEqual(self.tool("pause", "AVR"), ("AVR: paused\n", ""))
 
     def test_a_robot_that_does_not_listen(self):
         self.tool("robots")
