@@ -91,7 +91,10 @@ std::string explain(const Study& study, std::size_t row) {
       text += bus ? " for errors" : " for less urgent ones";
   }
   if (result.interference > 0) {
-    text += fmt::format(", {} for more urgent ones", time_text(result.interference));
+    const auto as_urgent = [&it](const Row& other) { return &other != &it && other.rank == it.rank; };
+    const bool equals = !bus && std::any_of(study.rows.begin(), study.rows.end(), as_urgent);
+    text += fmt::format(", {} for {}", time_text(result.interference),
+                        equals ? "ones as urgent or more" : "more urgent ones");
     if (result.largest < study.rows.size())
       text +=
           fmt::format(" ({} of that {})", time_text(result.largest_share), study.rows[result.largest].name);

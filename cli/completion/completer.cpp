@@ -143,15 +143,13 @@ class Completer {
     for (const std::string& word : option.accepted().words) add(word);
     if (!option.accepted().words.empty()) return;
     const std::string type = option.type();
-    if (const auto open = type.find('{'); open != std::string::npos)
-      return words_of(type.substr(open + 1, type.find('}', open) - open - 1), ',');
     // Without a type of its own a positional says by its name what it is: FILE, but not words.
     const std::string name = option.name();
     const bool telling = std::any_of(name.begin(), name.end(), [](char c) { return c >= 'A' && c <= 'Z'; });
     if (!type.empty() && type != "TEXT")
-      words_of(type, '|');
+      words_of(type);
     else if (option.is_positional() && telling)
-      words_of(name, '|');
+      words_of(name);
   }
 
   void positional(const Line& line) {
@@ -175,9 +173,9 @@ class Completer {
 
  private:
   /// "FILE|BOARD", "host|qemu", "[TOPIC ...]": words in capitals are placeholders, others are literal.
-  void words_of(std::string_view text, char separator) {
+  void words_of(std::string_view text) {
     while (!text.empty()) {
-      const std::size_t end = std::min(text.find(separator), text.size());
+      const std::size_t end = std::min(text.find('|'), text.size());
       word_of(text.substr(0, end));
       text.remove_prefix(std::min(end + 1, text.size()));
     }

@@ -10,6 +10,7 @@
 
 #include "ocm/base/text.hpp"
 #include "ocm/can/text.hpp"
+#include "ocm/client/counted.hpp"
 #include "ocm/protocol/request.hpp"
 
 #include "cli/logs/json_scanner.hpp"
@@ -318,6 +319,10 @@ bool JsonLineParser::take_topic(log::Entry& entry, Meaning& meaning) {
 /// The identifier of a message; one of J1939 is sent with any priority and by any source.
 bool JsonLineParser::take_message(log::Entry& entry, Meaning& meaning, const protocol::Topic& message) {
   meaning.frame = {&message, 0};
+  if (record_.frame && record_.frame.text != frame_name(meaning.frame))
+    return refuse(log::Cause::identifier,
+                  fmt::format("{} has no frame {}", message.name, shown(record_.frame.text)),
+                  fmt::format("frame is {}", frame_name(meaning.frame)));
   const protocol::Address& address = meaning.frame.layout().address;
   if (address.by == protocol::Address::By::pgn)
     return refuse(log::Cause::identifier, fmt::format("{} without id", message.name),
@@ -354,7 +359,7 @@ bool JsonLineParser::take_data(log::Entry& entry, const Meaning& meaning) {
   const std::size_t most = record_.has_fd ? log::max_fd_length : can::max_dlc;
   const std::size_t length = text.size() / 2;
   if (length > most || (record_.has_fd && !log::is_fd_length(length)))
-    return refuse(log::Cause::length, fmt::format("data of {} bytes", length),
+    return refuse(log::Cause::length, "data of " + client::counted(length, "byte"),
                   record_.has_fd ? "CAN FD has 0 to 8, 12, 16, 20, 24, 32, 48 or 64"
                                  : "a frame has at most 8; with \"fd\":{} up to 64");
   for (std::size_t i = 0; i < text.size(); i += 2) {
@@ -401,8 +406,9 @@ bool JsonLineParser::put_fields(log::Entry& entry, const Meaning& meaning) {
   const auto& layout = meaning.frame.layout();
   if (!layout.accepts(entry.length))
     return refuse(log::Cause::length,
-                  fmt::format("data of {} bytes with fields of {}", entry.length, meaning.frame.topic->name),
-                  fmt::format("it has {} bytes; leave data or fields out", layout.length));
+                  fmt::format("data of {} with fields of {}", client::counted(entry.length, "byte"),
+                              meaning.frame.topic->name),
+                  fmt::format("it has {}; leave data or fields out", client::counted(layout.length, "byte")));
   const std::span data{entry.data.data(), entry.length};
   Texts& texts = texts_[&layout];  // none for a frame without fields
   if (texts.overlapping) return put_overlapping(data, layout);

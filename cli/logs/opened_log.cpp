@@ -89,10 +89,6 @@ std::uint64_t OpenedLog::size() const noexcept {
   return static_cast<const FileSource&>(*file_).size();
 }
 
-std::uint64_t OpenedLog::position() const noexcept {
-  return static_cast<const FileSource&>(*file_).position();
-}
-
 bool OpenedLog::ended_early() const {
   return !input_->failure().empty();
 }

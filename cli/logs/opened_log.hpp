@@ -26,9 +26,8 @@ class OpenedLog {
   [[nodiscard]] log::Reader& reader() noexcept { return *reader_; }
   [[nodiscard]] const LogFormat& format() const noexcept { return *format_; }
   [[nodiscard]] const std::string& path() const noexcept { return path_; }
-  /// Size of the file in bytes, 0 for a pipe; and how much of it was read (compressed bytes): for progress.
+  /// Size of the file in bytes, 0 for a pipe.
   [[nodiscard]] std::uint64_t size() const noexcept;
-  [[nodiscard]] std::uint64_t position() const noexcept;
 
   /// Whether the file could not be read to its end: damaged packing, an error of the disk, a signal.
   [[nodiscard]] bool ended_early() const;

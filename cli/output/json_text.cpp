@@ -6,6 +6,7 @@
 #include "ocm/base/utf8.hpp"
 #include "ocm/can/error_frame.hpp"
 #include "ocm/can/text.hpp"
+#include "ocm/client/counted.hpp"
 #include "ocm/protocol/request.hpp"
 
 #include "cli/output/output.hpp"
@@ -539,9 +540,9 @@ void JsonText::write_rest(log::Bytes& out, const BusText& bus, const Known& know
   if (known.kind == Kind::request)
     write_request(out, known, entry);
   else if (known.kind == Kind::fields && known.frame.topic->is_message())
-    append_formatted(out, R"(,"topic":{},"frame":{},"error":"{} bytes, fewer than {}")",
+    append_formatted(out, R"(,"topic":{},"frame":{},"error":"{}, fewer than {}")",
                      json_string(known.frame.topic->name), json_string(frame_name(known.frame)),
-                     entry.bytes().size(), known.frame.layout().length);
+                     client::counted(entry.bytes().size(), "byte"), known.frame.layout().length);
   else if (known.kind == Kind::fields)
     append_formatted(out, R"(,"priority":"{}","topic":{},"frame":{},"error":"DLC {} instead of {}")",
                      name(priority), json_string(known.frame.topic->name),

@@ -6,11 +6,13 @@
 #include <cstring>
 #include <string>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "ocm/base/utf8.hpp"
 #include "ocm/can/error_frame.hpp"
 #include "ocm/can/text.hpp"
+#include "ocm/client/counted.hpp"
 #include "ocm/j1939/identifier.hpp"
 #include "ocm/protocol/request.hpp"
 
@@ -32,11 +34,12 @@ constexpr std::string_view red = "\033[31m";
 struct Column {
   FieldText value;
   std::size_t frame = 0;
-  std::string before;  ///< blanks, label
+  std::string before;  ///< label
   std::string unit;    ///< with a blank before it; empty where none is shown
   bool unit_of_all = false;
   std::size_t width = 0;
-  bool varies = false;  ///< not every frame has it
+  bool varies = false;            ///< not every frame has it
+  std::string_view apart = "  ";  ///< behind another one
 };
 
 class Pretty final : public Output {
@@ -137,9 +140,10 @@ class Pretty final : public Output {
       case Meaning::wrong_dlc:
         head(out, event, "");
         out.append(painted(
-            red,
-            fmt::format("{} {} instead of {}: {}", event.reception.topic->is_message() ? "bytes" : "DLC",
-                        event.entry.length, event.reception.frame.layout().length, frame_text(event.entry))));
+            red, fmt::format("{} instead of {}: {}",
+                             event.reception.topic->is_message() ? client::counted(event.entry.length, "byte")
+                                                                 : fmt::format("DLC {}", event.entry.length),
+                             event.reception.frame.layout().length, frame_text(event.entry))));
         break;
       case Meaning::remote:
         head(out, event, "");
@@ -239,7 +243,7 @@ class Pretty final : public Output {
         if (!selection.has(layout, field)) continue;
         if (field.uncertainty && !columns.empty() && columns.back().value.field().law == field.law) {
           // Beside its value: 0.0482 +-0.0003 m.
-          columns.push_back({FieldText{field}, i, " +-", std::move(columns.back().unit), false, 0, true});
+          columns.push_back({FieldText{field}, i, " +-", std::move(columns.back().unit), false, 0, true, ""});
           columns[columns.size() - 2].unit.clear();
           continue;
         }
@@ -248,7 +252,7 @@ class Pretty final : public Output {
           label = layout.name;
           if (layout.fields.size() > 1 || field.is_derived()) label.append(".").append(field.name);
         }
-        std::string before = (columns.empty() ? "" : "  ") + painted(dim, label) + ' ';
+        std::string before = painted(dim, label) + ' ';
         std::string unit = field.unit.empty() ? std::string{} : ' ' + std::string{field.unit};
         columns.push_back({FieldText{field}, i, std::move(before), std::move(unit), false, width_of(field),
                            layout.may_lack(field)});
@@ -285,12 +289,14 @@ class Pretty final : public Output {
   /// `data_of` a frame of the topic: its bytes.
   template <class DataOf>
   void values(Buffer& out, const protocol::Topic& topic, DataOf data_of) {
+    bool first = true;
     for (const Column& column : topics_.at(&topic).columns) {
       const std::span<const std::uint8_t> bytes = data_of(column.frame);
       const std::uint8_t* const data = bytes.data();
       const auto& field = column.value.field();
       if (column.varies && !topic.frames[column.frame].has(field, bytes)) continue;
       may_break(out);
+      if (!std::exchange(first, false)) out.append(column.apart);
       out.append(column.before);
       char number[FieldText::room];
       bool named = false;

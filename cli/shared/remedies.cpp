@@ -90,7 +90,8 @@ std::vector<client::Finding> findings_of(const transport::BusCounters& bus,
       "another program or robot on the bus, or another spec: `amiroctl listen` shows them");
   add(seen.remote, "remote frame", "the protocol has none: another program or robot on the bus");
   add(seen.wrong_dlc, "frame* of a wrong length", "a board or a program with another spec");
-  add(seen.incomplete, "incomplete sample", "frames are lost on the bus");
+  add(seen.incomplete, "incomplete sample",
+      "frames are lost, or a stream is so fast that its samples mix: `amiroctl stats` shows which");
   return all;
 }
 
@@ -113,6 +114,8 @@ std::string remedy(const client::Refused& refused) {
     return fmt::format(
         "it accepts less than the range that `amiroctl info {}` shows: the comments of the fields say what",
         topic.name);
+  if (reason == "no_sample" && (topic.name == "avoid" || topic.name == "home"))
+    return std::string{ring_without_offsets};
   return "`amiroctl doctor` says which parts do not answer; when they do, it accepts the same again";
 }
 

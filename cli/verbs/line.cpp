@@ -5,12 +5,14 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "ocm/mapper/link/demultiplexer.hpp"
 
+#include "cli/fleet/line_log.hpp"
 #include "cli/logs/file_source.hpp"
 #include "cli/output/digits.hpp"
 #include "cli/output/printer.hpp"
@@ -265,12 +267,19 @@ bool summarise(const Streams& streams, bool to_robot) {
 
 // --- the verb ----------------------------------------------------------------------------------------------
 
-/// Reads to the end, to a signal, or until `most` sentences were shown (0: all); how many were.
-std::uint64_t show(log::Source& source, Streams& streams, std::uint64_t most) {
+/// Reads to the end, to a signal, or until `most` sentences were shown (0: all); how many were. Leaves
+/// through cli::fail where it is a file of `map --record`: that has times, and both directions.
+std::uint64_t show(log::Source& source, const std::string& name, Streams& streams, std::uint64_t most) {
   std::array<char, 1 << 16> block;
   Buffer out;
   std::uint64_t shown = 0;
+  bool begins = true;
   for (std::size_t size = source.read(block); size != 0; size = source.read(block)) {
+    if (std::exchange(begins, false) &&
+        std::string_view{block.data(), size}.starts_with(fleet::line_log_begins))
+      fail({fmt::format("line: {} is the recorded line of a central, with times and both directions", name),
+            "`amiroctl serve FILE` plays it; line reads the bytes of one direction"},
+           exit_usage);
     for (const char c : std::string_view{block.data(), size}) {
       const int index = streams.feed(static_cast<std::uint8_t>(c));
       if (index < 0) continue;
@@ -294,7 +303,7 @@ void run_line(const LineOptions& options, int& exit_code) {
     fail({fmt::format("cannot read {}: {}", shown_name, source.failure()),
           fmt::format("expected a file with {}", wanted)});
   Streams streams{options.to_robot};
-  const std::uint64_t shown = show(source, streams, options.count);
+  const std::uint64_t shown = show(source, shown_name, streams, options.count);
   const bool damaged = summarise(streams, options.to_robot);
   if (interrupted() == 0 && !source.failure().empty())
     fail({fmt::format("{}: cannot be read beyond byte {}: {}", shown_name, source.position(),

@@ -129,7 +129,7 @@ void declare_serve(Verb verb, Session& session, int& exit_code) {
                 "  amiroctl serve --allow-commands    with buttons and keys to drive\n"
                 "  amiroctl serve drive.log           played, with a bar to wind it\n"
                 "  amiroctl serve robots              mappers behind a central, and their map\n"
-                "  amiroctl serve room.line           a drive of mappers that --record has written\n"
+                "  amiroctl serve robots room.line    a drive of mappers that --record has written\n"
                 "  amiroctl serve live robots         both\n"
                 "  amiroctl serve --spec car.dbc");
   const auto given = std::make_shared<GivenToServe>();

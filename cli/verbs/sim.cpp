@@ -154,6 +154,11 @@ void refuse_boards_options(Verb verb, const Session& session) {
   const char* environment = std::getenv("AMIROCTL_BUS");
   if (verb.parent().is_typed("--bus") && session.bus_name != (environment != nullptr ? environment : ""))
     fail({"sim: --bus with mappers", "they have no bus: leave one out"}, exit_usage);
+  const char* specs = std::getenv("AMIROCTL_SPEC");
+  if (verb.parent().is_typed("--spec") &&
+      session.spec_files != std::vector<std::string>{specs != nullptr ? specs : ""})
+    fail({"sim: --spec with mappers", "they say sentences, of one spec that is built in: leave it out"},
+         exit_usage);
   if (verb.count("--lines") != 0)
     for (const char* option : {"--radio-loss", "--radio-range", "--radio-repeats", "--links"})
       if (verb.is_typed(option))

@@ -218,9 +218,10 @@ class CommandParser {
     if (line.size() == 1 || line[1] == "all") {
       auto all = stop_all(priority);
       if (all.frames.empty())
-        return WordError{0, "robot " + detail::quoted(catalogue_->robot) + " has nothing to stop",
-                         "its spec has neither sensors nor motors; what sends a message again and again is "
-                         "ended where it runs"};
+        return WordError{
+            0, "robot " + detail::quoted(catalogue_->robot) + " has nothing to stop",
+            "its spec has neither sensors nor motors: what holds until another comes is ended by "
+            "set, with zeros; what sends a message again and again is ended where it runs"};
       return all;
     }
     const auto any = topic(line, 1, {});

@@ -82,6 +82,24 @@ namespace ocm::cli::words {
   return "it is a field of " + topics + ": " + example;
 }
 
+/// Of a sensor and one of its values, such as gyro.z: how that is shown; empty: it is none.
+[[nodiscard]] inline std::string topic_of_field(const protocol::Catalogue& catalogue, std::string_view word) {
+  const std::size_t point = word.find('.');
+  const auto* const topic = find_topic(catalogue, word.substr(0, point));
+  if (point == word.npos || topic == nullptr) return {};
+  const std::string_view rest = word.substr(point + 1);
+  for (const protocol::FrameLayout& frame : topic->frames)
+    for (const protocol::Field& field : frame.values()) {
+      const bool whole = rest.size() == frame.name.size() + 1 + field.name.size() &&
+                         rest.starts_with(frame.name) && rest[frame.name.size()] == '.' &&
+                         rest.ends_with(field.name);
+      if (whole || rest == field.name)
+        return "the topic is '" + std::string{topic->name} +
+               "'; listen and decode show one of its fields with --field " + std::string{word};
+    }
+  return {};
+}
+
 /// "it is the identifier of a sample of gyroscope", for one as candump shows it; empty: of none.
 [[nodiscard]] inline std::string whose_identifier(const protocol::Catalogue& catalogue,
                                                   std::string_view word) {
@@ -120,6 +138,8 @@ namespace ocm::cli::words {
     id.hex(*number, 2);
     return "did you mean '" + std::string{id.view()} + "' (" + std::string{topic->name} + ")?";
   }
+  if (std::string of = topic_of_field(catalogue, word); !of.empty() && kind != protocol::Kind::actuator)
+    return of;
   if (std::string field = whose_field(catalogue, word); !field.empty()) return field;
   if (std::string of = whose_identifier(catalogue, word); !of.empty()) return of;
   const auto words = topic_words(catalogue, kind);

@@ -99,7 +99,8 @@ TEST_CASE("remedies: each counter is a finding of its own, and zero is none") {
   CHECK(all[3].what == "4 frames of a wrong length");
   CHECK(all[3].remedy == "a board or a program with another spec");
   CHECK(all[4].what == "5 incomplete samples");
-  CHECK(all[4].remedy == "frames are lost on the bus");
+  CHECK(all[4].remedy ==
+        "frames are lost, or a stream is so fast that its samples mix: `amiroctl stats` shows which");
 }
 
 TEST_CASE("remedies: every reason of a refusal has words, and says what would be accepted") {

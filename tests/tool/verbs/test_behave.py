@@ -1,6 +1,7 @@
 """amiroctl behave: the boards follow a line or avoid obstacles, until the verb ends."""
 
 import json
+import resource
 import signal
 import subprocess
 import time
@@ -173,6 +174,15 @@ class Behave(Case):
         _, err = behave.communicate(timeout=20)
         self.assertEqual((behave.returncode, err), (130, ""))
 
+    def test_it_waits_between_two_looks_at_the_board(self):
+        """Without a wait its processor time is all the time that there is."""
+        self.start_sim("--without", "di_wheel_drive")
+        for arguments, code in ((("avoid", "--for", "2s"), 0), (("none",), 1)):
+            before = resource.getrusage(resource.RUSAGE_CHILDREN)
+            self.run_tool("behave", *arguments, "--no-confirm" if code == 0 else "--force", code=code)
+            after = resource.getrusage(resource.RUSAGE_CHILDREN)
+            self.assertLess(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, 0.5, arguments)
+
     def test_killed(self):
         self.start_sim()
         for which in ("follow", "avoid"):
@@ -187,6 +197,7 @@ class Behave(Case):
         self.run_tool("set", "ring_calibration", "action=forget")
         _, err = self.run_tool("behave", "avoid", code=1)
         self.assertIn("power_management refuses avoid: no_sample", err)
+        self.assertIn("`amiroctl set ring_calibration action=measure`", err)
 
 
 if __name__ == "__main__":

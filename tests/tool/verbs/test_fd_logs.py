@@ -87,7 +87,7 @@ class FdLogs(Case):
         self.assertEqual([float(line.split(",")[1]) for line in out.splitlines()[1:-1]],
                          [fields["Throughput"] for _, _, fields in self.expected])
         out, err = self.run_tool(*CAR, "decode", self.log, "--pretty", "--topic", "BatteryCells")
-        self.assertIn("bytes 8 instead of 32", out)
+        self.assertIn("8 bytes instead of 32", out)
         self.assertEqual(out.count("SerialNumber"), len(self.expected) + 1)
 
     def test_back_from_json_and_edited(self):

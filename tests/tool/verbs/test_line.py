@@ -137,6 +137,9 @@ class Line(Case):
         for said in (b"", b"\n\n", b"{U,1,2,3}\n", bytes(range(256)) * 1000):
             _, err = self.line(said, code=1)
             self.assertIn("no whole sentence in the standard input", err)
+        _, err = self.line(b"# line of a central, version 1\n1.0 > {S,IDL}\n", code=2)
+        self.assertEqual(err, "amiroctl: line: the standard input is the recorded line of a central, with times and both directions\n"
+                              "          `amiroctl serve FILE` plays it; line reads the bytes of one direction\n")
         self.assertEqual(len(self.line(b"{S,IDL}" * 5, "-n", "3")[0]), 3)
         for arguments, code, word in ((["/nowhere.log"], 1, "/nowhere.log"), ([self.folder], 1, "Is a directory"),
                                       (["-n", "0"], 2, "--count"), (["--what"], 2, "--what")):

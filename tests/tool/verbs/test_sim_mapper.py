@@ -265,6 +265,8 @@ class Simulated(Case):
             self.assertIn(words, error)
         _, error = self.run_tool("--bus", "vcan0", "sim", "--robots", "1", code=2)
         self.assertIn("sim: --bus with mappers", error)
+        _, error = self.run_tool("--spec", "/nowhere.json", "sim", "--robots", "1", code=2)
+        self.assertIn("sim: --spec with mappers", error)
         for arguments in (["--robots", "0"], ["--robots", "129"], ["--robots", "1", "--radio-loss", "2"]):
             self.run_tool("sim", *arguments, code=2)
 

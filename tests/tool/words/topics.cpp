@@ -111,6 +111,13 @@ TEST_CASE("a field is said to be one, of at most three topics") {
 }
 
 TEST_CASE("a number without its 0x is one in hexadecimal, or in decimal") {
+  CHECK(topic_suggestion(amiro::catalogue, "gyro.z") ==
+        "the topic is 'gyroscope'; listen and decode show one of its fields with --field gyro.z");
+  CHECK(topic_suggestion(amiro::catalogue, "odom.pose.x") ==
+        "the topic is 'odometry'; listen and decode show one of its fields with --field odom.pose.x");
+  CHECK_THAT(topic_suggestion(amiro::catalogue, "gyro.nonsense.z"), Catch::StartsWith("one of: "));
+  CHECK_THAT(topic_suggestion(amiro::catalogue, "gyro.z", Kind::actuator), Catch::StartsWith("one of: "));
+  CHECK_THAT(topic_suggestion(amiro::catalogue, "gyro.nothing"), Catch::StartsWith("one of: "));
   CHECK(topic_suggestion(amiro::catalogue, "1f") == "did you mean '0x1F' (proximity_ring)?");
   CHECK(topic_suggestion(amiro::catalogue, "30") == "did you mean '0x1E' (power_status)?");
   CHECK(topic_suggestion(amiro::catalogue, "1") == "did you mean '0x01' (motors)?");
