@@ -258,6 +258,29 @@ class Program(unittest.TestCase):
         self.assertEqual(done.stderr, "good.json: it has only topics, which --to spec has no place for; topics are in the spec already\n")
         self.assertEqual(run("good.json", "--to", "spec", "--check", cwd=self.folder).returncode, 0)
 
+    def test_up_to_two_thousand_fields_are_compared(self):
+        """The last one lies over the first; of more than 2000 that is not looked for, as it would take long."""
+        for count in (2000, 2001):
+            fields = [{"name": f"f{i}", "bit": i, "type": "u1"} for i in range(count - 1)] + [{"name": "last", "bit": 0, "type": "u1"}]
+            self.spec.write_text(json.dumps({"robot": "x", "messages": [{"name": "M", "pgn": "0xFEEC", "length": 1785, "fields": fields}]}))
+            done = run(self.spec, "--check")
+            self.assertEqual(done.returncode, 0)
+            said = f'{self.spec}:1: /messages/0/fields/1999: "f0" and "last" have bits in common; each is read by itself\n' if count == 2000 else ""
+            self.assertEqual(done.stderr, said)
+
+    def test_text_that_would_mean_something_in_markdown(self):
+        """An underscore within a word means nothing; one beside it, and what begins a list or a heading, does."""
+        fields = [{"name": "f", "byte": 0, "type": "u8"}]
+        for text, shown in (("0_0 9_9 a_z A_Z z_0 é_é", None), ("_a", r"\_a"), ("a_", r"a\_"), ("a _ b", r"a \_ b"), ("-_a", r"\-\_a"), ("a_-", r"a\_-"),
+                            ("- a + b = c > d # e", r"\- a \+ b \= c \> d \# e"), ("a-b a+b a=b a>b a#b", None),
+                            ("*a* `b` <c> [d] |e| ~f~", r"\*a\* \`b\` \<c> \[d\] \|e\| \~f\~"),
+                            ("{a} (b) !c 1.d", None), ("a\tb\n\nc", "a b c")):
+            self.spec.write_text(json.dumps({"robot": "x", "messages": [{"name": "M", "id": 1, "length": 1, "description": text, "fields": fields}]}))
+            done = run(self.spec, "--to", "markdown", "-o", "-")
+            self.assertEqual((done.returncode, done.stderr), (0, ""), text)
+            row = next(line for line in done.stdout.splitlines() if line.startswith("| [M](#m) |"))
+            self.assertEqual(row.split(" |  |  | ")[1], (text if shown is None else shown) + " |", text)
+
     def test_help_version_and_schema(self):
         for option in ("--help", "--version", "--schema"):
             done = run(option)

@@ -140,6 +140,16 @@ TEST_CASE("a compass's axes, and those of its own field, are noisy each by itsel
   CHECK(std::sqrt(squares) == Approx(0.002).epsilon(0.1));
 }
 
+TEST_CASE("the noise of a compass does not come again after 256 samples") {
+  const CompassModel model;
+  const Noise noise{7, 1};
+  int different = 0;
+  for (std::uint64_t i = 0; i < 100; ++i)
+    different += compass_reading(model, noise, {i, {0, 0}, 0}).x !=
+                 compass_reading(model, noise, {i + 256, {0, 0}, 0}).x;
+  CHECK(different > 30);
+}
+
 TEST_CASE("a compass has the field in its robot's frame") {
   const auto read = [](Vector field, double heading) {
     return compass_reading(quiet_compass, {1, 1}, {0, field, heading});

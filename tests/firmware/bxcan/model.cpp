@@ -388,6 +388,21 @@ TEST_CASE("a FIFO holds three; what is above its length, and when it is released
   }
 }
 
+TEST_CASE("an overrun is there until it is acknowledged, however many frames are released [RM0008 24.9.5]") {
+  Running model;
+  model.write(Register::fs1r, 1);
+  model.write(Register::fa1r, 1);
+  model.write(Register::fmr, 0);
+  for (std::uint32_t id = 0x101; id < 0x105; ++id) CHECK(model.deliver({id, 0, {}}));
+  CHECK(model.read(Register::rf0r) == (3 | 8 | 0x10));
+  model.write(Register::rf0r, 0x20);
+  CHECK(model.read(Register::rf0r) == (3 | 8 | 0x10 | 0x20));
+  model.read(Register::rir);
+  CHECK(model.read(Register::rf0r) == (2 | 0x10));
+  model.write(Register::rf0r, 0x10);
+  CHECK(model.read(Register::rf0r) == 2);
+}
+
 TEST_CASE("each bank has a place, and filters are set up while they are off [RM0008 24.9.4]") {
   Running model;
   for (std::uint32_t bank = 0; bank < 14; ++bank)

@@ -32,19 +32,15 @@ constexpr std::uint32_t transmitted = 19, received = 20, status_changed = 22;
 struct Bench : private PlayedRegisters {
   Chip played;
   Model model;
+  Attached attached{stm32::can1_address, *this};
   Port port;
   stm32::CanBus bus;
 
   Bench() {
-    played_registers[stm32::can1_address] = this;
     REQUIRE(bus.start(port, timing, filters).ok());
     for (int i = 0; i < 4; ++i) static_cast<void>(model.read(bxcan::Register::msr));  // it joins
     REQUIRE(!model.initialising());
     played.calls.clear();
-  }
-  ~Bench() override {
-    // The interrupts of the next test are not for this bus.
-    played_registers.erase(stm32::can1_address);
   }
   std::uint32_t read(std::uint32_t offset) override {
     return model.read(static_cast<bxcan::Register>(offset));
@@ -95,7 +91,7 @@ TEST_CASE("CAN: a controller that does not answer is an error, and no interrupt 
     std::uint32_t read(std::uint32_t) override { return 0; }
     void write(std::uint32_t, std::uint32_t) override {}
   } silent;
-  played_registers[stm32::can1_address] = &silent;
+  const Attached attached{stm32::can1_address, silent};
   Port port;
   stm32::CanBus bus;
   CHECK(bus.start(port, timing, filters).error == ocm::base::Error::timed_out);

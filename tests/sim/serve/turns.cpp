@@ -123,6 +123,12 @@ TEST_CASE("interference comes at random, as often as it is asked for, and none w
     }
     return bus.totals().errors;
   };
+  // It is a second ahead of the bus: what comes within that is disturbed.
+  simulation::Arbiter bus{500'000};
+  sim::Interference ahead{100, 1};
+  ahead.disturb(bus, base::Time{});
+  bus.advance(base::Time{1s}, [](const Delivery&) {});
+  CHECK(static_cast<double>(bus.totals().errors) == Approx(100).margin(50));
   CHECK(errors_in_a_minute(0, 1) == 0);
   CHECK(errors_in_a_minute(-1, 1) == 0);
   double sum = 0;

@@ -50,6 +50,9 @@ TEST_CASE(
   CHECK(commanded({"20C#E803"}, true) == "follow 20C#E803");
   CHECK(commanded({"201#0000000000000000", "20B#A08601000000E803"}, true) == "motors 201#0000000000000000");
   CHECK(commanded({"23C#010203", "229#E803", "208#01"}, false).empty());  // not of the wheels' board
+  // None is in another format, of another length, a remote frame, or what a board says.
+  CHECK(commanded({"0000020C#E803", "20C#E8", "20C#", "20C#R", "60C#E803"}, false).empty());
+  CHECK(commanded({"00000201#0100000000000000", "201#01", "601#0100000000000000"}, false).empty());
 }
 
 TEST_CASE("behaviour watch: what came before it began does not count") {

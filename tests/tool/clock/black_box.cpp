@@ -124,6 +124,23 @@ log::Entry at(Duration after) {
   return {wall + after, can::Frame{0x608, 1, {}}};
 }
 
+TEST_CASE("black box: frames of one time stay in the order in which they came") {
+  const World world{1};
+  Boxed boxed;
+  for (std::uint32_t id = 0x601; id <= 0x603; ++id)
+    for (const Duration after : {1ms, 0ms})
+      boxed.box.add({wall + after, can::Frame{id, 1, {}}}, World::start);
+  const auto in_turn = [](const auto& entries) {
+    REQUIRE(entries.size() == 6);
+    for (std::uint32_t i = 0; i < 6; ++i) {
+      CHECK(entries[i].id == 0x601 + i % 3);
+      CHECK(entries[i].time == wall + (i < 3 ? 0ms : 1ms));
+    }
+  };
+  in_turn(boxed.box.take_fresh(wall + 1s));
+  in_turn(boxed.box.take(World::start, wall).entries);
+}
+
 TEST_CASE("black box: each of its times is the last, or the first, of its kind") {
   const World world{1};
   constexpr Duration settling = operate::BlackBox::settling;

@@ -241,6 +241,11 @@ class Run {
     error(3.04, can::error_class::controller, controller::tx_warning | controller::tx_passive);
     error(3.06, can::error_class::controller, controller::tx_warning);
     error(3.08, can::error_class::controller, controller::rx_passive);
+    // What says nothing of the controller leaves it as it is.
+    for (const auto other :
+         {can::error_class::tx_timeout, can::error_class::arbitration_lost, can::error_class::protocol,
+          can::error_class::transceiver, can::error_class::no_acknowledgement, can::error_class::bus_error})
+      error(3.09, other, controller::active);
     error(3.1, can::error_class::controller, controller::rx_overflow);
     error(3.12, can::error_class::controller, controller::active);
     error(3.14, can::error_class::bus_off, controller::active);

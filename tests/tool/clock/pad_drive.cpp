@@ -233,6 +233,8 @@ TEST_CASE("drive by gamepad: where a stick is") {
   CHECK(deflection(192, {0, 255}) == Approx(0.45));  // in steps of a twentieth
   CHECK(deflection(500, {0, 255}) == 1);             // beyond what the device says
   CHECK(deflection(7, {0, 0}) == 0);
+  for (const int value : {-1, 0, 1}) CHECK(deflection(value, {-1, 1}) == value);  // a cross
+  for (const int value : {0, 1}) CHECK(deflection(value, {0, 1}) == 2 * value - 1);
   CHECK_FALSE(std::signbit(deflection(-1, {-100, 100})));
   const double hardly = deflection(-11, {-100, 100});  // beyond the middle, and no step from it
   CHECK(hardly == 0);

@@ -526,6 +526,18 @@ TEST_CASE("page drive: what a board refuses is said to all, by what was asked") 
                           "keep); it accepts 1us to 65535s"));
 }
 
+TEST_CASE("page drive: a refusal is the answer to a frame that has left just before it") {
+  Page page{{.stuck = {{World::start, World::start + 100ms}}}};
+  page.line("publish gyro 50ms", page.a);
+  CHECK(page.shown == 0);
+  page.world.pass(150ms);  // it has left, and nothing has looked since
+  page.control.heard({page.world.wall_at(page.world.now()), frame(refusal, {8, 6, 2, 0, 0, 0, 0, 0})});
+  CHECK(page.shown == 1);
+  const Strings told = page.told(page.b);
+  REQUIRE(told.size() == 1);
+  CHECK(told[0].starts_with("di_wheel_drive refuses gyroscope: bad_period"));
+}
+
 TEST_CASE("page drive: at the end the motors rest, or it is known that they may not") {
   Page page;
   page.holds(0.1, page.a, 0ms, 300ms);

@@ -14,6 +14,7 @@
 #include "cli/logs/opened_log.hpp"
 #include "cli/record/recorder.hpp"
 #include "cli/shared/messages.hpp"
+#include "tests/tool/captured.hpp"
 #include "tests/tool/clock/world.hpp"
 #include "tests/unit/base/explore.hpp"
 
@@ -391,8 +392,8 @@ TEST_CASE("recorder: whatever happens to program, clock, buses and disk, no fram
 /// Frames at their times, and how late each was fetched at most.
 class Fetched final : public record::Capture {
  public:
-  Fetched(World& world, bool keeps_times) : world_(&world), keeps_times_(keeps_times) {
-    for (int i = 0; i < 20; ++i) arrivals_.push_back(World::start + 15ms + i * 10ms);
+  Fetched(World& world, bool keeps_times, int frames = 20) : world_(&world), keeps_times_(keeps_times) {
+    for (int i = 0; i < frames; ++i) arrivals_.push_back(World::start + 15ms + i * 10ms);
     world.inputs[descriptor()] = [this] {
       return next_ < arrivals_.size() ? arrivals_[next_] : Moment::max();
     };
@@ -458,6 +459,102 @@ TEST_CASE(
   CHECK(latest(false, false) < 1ms);
   CHECK(latest(true, true) < 1ms);
   CHECK(latest(false, true) < 1ms);
+}
+
+/// The files of a recording to `folder`, which are open.
+record::FilesOptions to_one_file(const Folder& folder) {
+  record::FilesOptions options;
+  options.format = cli::logs::find_format("candump-ns");
+  options.path = folder / ("run" + std::string{options.format->ending});
+  options.sync = false;
+  return options;
+}
+
+TEST_CASE("recorder: frames are written once a second, and at once where they are read live") {
+  const Silence silence;
+  const Folder folder;
+  const auto writes = [&](bool live) {
+    folder.empty();
+    World world{1};
+    int count = 0;
+    world.disk = [&count](int, std::string_view text) {
+      if (!text.empty()) ++count;
+      return cli::Written{text.size(), 0};
+    };
+    record::Files files{to_one_file(folder), amiro::catalogue};
+    REQUIRE(files.open().ok());
+    std::vector<record::Port> ports(1);
+    ports[0].name = "can0";
+    ports[0].capture = std::make_unique<Fetched>(world, true, 500);
+    record::Limits limits;
+    limits.duration = 4900ms;
+    const auto reopen = [](std::string_view) -> transport::Outcome<std::unique_ptr<record::Capture>> {
+      return transport::Failure{"away", ""};
+    };
+    record::Recorder recorder{std::move(ports), reopen, files, limits, live};
+    world.beside = [&recorder] { static_cast<void>(recorder.writing().step(0ms)); };
+    recorder.receive();
+    world.beside = nullptr;
+    while (recorder.writing().step(0ms)) world.pass(1ms);
+    CHECK(recorder.received() == 489);
+    CHECK(recorder.lasted() >= 4900ms);
+    CHECK(recorder.lasted() < 5s);
+    return count;
+  };
+  const int once_a_second = writes(false);
+  CHECK(once_a_second >= 4);
+  CHECK(once_a_second <= 6);
+  CHECK(writes(true) > 100);
+}
+
+/// No frame comes. It is down for a second, then up, and closed from then on.
+class Changing final : public record::Capture {
+ public:
+  Changing(World& world, Moment down, Moment up, Moment closed)
+      : world_(&world), down_(down), up_(up), closed_(closed) {}
+  std::size_t read(std::span<log::Entry>, std::uint16_t) override { return 0; }
+  std::string_view name() const override { return "can0"; }
+  int descriptor() const override { return 1000; }
+  BusState state() const override {
+    if (world_->now() >= closed_) return BusState::closed;
+    return world_->now() >= down_ && world_->now() < up_ ? BusState::down : BusState::up;
+  }
+  const transport::Failure& failure() const override { return failure_; }
+  std::uint64_t lost() const override { return 0; }
+  std::uint32_t bit_rate() const override { return 0; }
+  bool keeps_times() const override { return true; }
+  bool may_return() const override { return true; }
+
+ private:
+  World* world_;
+  Moment down_, up_, closed_;
+  transport::Failure failure_{"can0 is gone", "plug it in"};
+};
+
+TEST_CASE("recorder: what becomes of an interface is said once, when it changes") {
+  Captured said{STDERR_FILENO};
+  const Folder folder;
+  World world{1};
+  world.inputs[1000] = [] { return Moment::max(); };
+  record::Files files{to_one_file(folder), amiro::catalogue};
+  REQUIRE(files.open().ok());
+  std::vector<record::Port> ports(1);
+  ports[0].name = "can0";
+  ports[0].capture =
+      std::make_unique<Changing>(world, World::start + 1s, World::start + 2s, World::start + 3s);
+  const auto reopen = [&world](std::string_view) -> transport::Outcome<std::unique_ptr<record::Capture>> {
+    if (world.now() < World::start + 4s) return transport::Failure{"away", ""};
+    return std::unique_ptr<record::Capture>{
+        std::make_unique<Changing>(world, Moment::max(), Moment::max(), Moment::max())};
+  };
+  record::Limits limits;
+  limits.duration = 5s;
+  record::Recorder recorder{std::move(ports), reopen, files, limits, false};
+  recorder.receive();
+  while (recorder.writing().step(0ms)) world.pass(1ms);
+  CHECK(said.text() ==
+        "can0 went down; waiting for it to come back\ncan0 is up again\n"
+        "can0 is gone; waiting for it to come back\ncan0 is back\n");
 }
 
 }  // namespace tool_clock_record_test

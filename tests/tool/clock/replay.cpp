@@ -11,6 +11,7 @@
 #include "cli/shared/messages.hpp"
 #include "cli/shared/outgoing.hpp"
 #include "cli/shared/set_points.hpp"
+#include "tests/tool/captured.hpp"
 #include "tests/tool/clock/played_bus.hpp"
 #include "tests/unit/base/explore.hpp"
 
@@ -362,6 +363,27 @@ TEST_CASE("replay: a set point that has left may be older than the next one") {
   CHECK(replayed.sent().size() == entries.size());
 }
 
+TEST_CASE("replay: the motors may still move only where their zero is among the frames that wait") {
+  for (const bool zero_waits : {false, true}) {
+    CAPTURE(zero_waits);
+    World world{1};
+    PlayedBus::Conditions conditions;
+    conditions.stuck = {{World::start + (zero_waits ? 400ms : 800ms), World::start + 60s}};
+    auto entries = drive_at({0s, 500ms}, true);
+    std::erase_if(entries, [](const log::Entry& entry) { return entry.id != motors; });
+    for (std::uint8_t i = 0; i < 3; ++i)
+      entries.emplace_back(base::Time{1s}, can::Frame{0x601, 4, {i}}, std::uint16_t{0});
+    OnOneBus<PlayedLog> replayed{world, conditions, entries, std::size_t{1}};
+    const auto left = leaving([&] {
+      replayed.play();
+      replayed.player->expect_all_left();
+    });
+    CHECK(left.code == cli::exit_failure);
+    CHECK(replayed.sent().size() == entries.size());
+    CHECK((left.text.find(cli::still_moving) != std::string::npos) == zero_waits);
+  }
+}
+
 TEST_CASE("replay: a stop of the program while the motors run ends it, whenever that was") {
   const Silence silence;
   std::vector<Duration> times;
@@ -521,6 +543,12 @@ TEST_CASE("replay: where one bus fails, what runs on the others is ended") {
     REQUIRE(sent.size() == 4);
     CHECK((sent[2].frame.id == motors && cli::is_rest(sent[2].frame)));
     CHECK((sent[3].frame.id == travels.id && cli::is_rest(sent[3].frame)));
+  }
+  {
+    // A bus that takes its time is waited for.
+    const auto [told, sent] = one_failed({.frame_time = 20ms});
+    CHECK(told == std::vector{first});
+    CHECK(sent.size() == 4);
   }
   {
     // Full for longer than the first zero waits: the second is given all the same.

@@ -133,6 +133,31 @@ TEST_CASE("threshold: floats are in the order of their values, infinities too") 
   }
 }
 
+TEST_CASE("threshold: of double precision the same") {
+  protocol::Field field;
+  field.name = "real";
+  field.position = {0, 64};
+  field.number = protocol::Number::float64;
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  const std::vector<double> values{-infinity, -1e12, -1.5, -1e-12, -0.0,    0.0,
+                                   1e-12,     0.5,   1.5,  1e12,   infinity};
+  for (const char* const text : {"0", "-1.5", "0.5", "1e-12", "-1e12", "3"}) {
+    for (const Comparison comparison :
+         {Comparison::less, Comparison::at_most, Comparison::greater, Comparison::at_least}) {
+      CAPTURE(text, comparison);
+      const auto typed = cli::words::Condition::of(field, comparison, text);
+      const auto found = threshold(field, comparison, text);
+      REQUIRE(typed);
+      REQUIRE(found);
+      for (const double value : values) {
+        const auto raw = std::bit_cast<std::int64_t>(value);
+        CHECK(holds(field, *found, raw) == typed->holds(raw));
+      }
+    }
+    CHECK_FALSE(threshold(field, Comparison::equal, text));
+  }
+}
+
 TEST_CASE("threshold: named values and flags") {
   constexpr protocol::NamedValue names[] = {{0, "off"}, {2, "on"}, {3, "broken"}};
   protocol::Field field = field_of(8, false);

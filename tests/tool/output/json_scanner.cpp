@@ -60,6 +60,20 @@ TEST_CASE("JSON strings: a byte in words", "[output]") {
   CHECK(text_of(R"(\\x0g)") == "\\x0g");
 }
 
+TEST_CASE("JSON lines: a string has no control characters, and blanks are three", "[output]") {
+  for (int c = 0; c < 256; ++c) {
+    INFO(c);
+    const std::string text = std::string{'"'} + static_cast<char>(c) + "a\"";
+    JsonScanner inside{text};
+    JsonValue value;
+    CHECK(inside.take_value(value) == (c >= 0x20));
+    CHECK(value.text.size() == (c < 0x20 || c == '"' ? 0 : 2));
+    const std::string before = static_cast<char>(c) + std::string{"1"};
+    JsonScanner blank{before};
+    CHECK(blank.take('1') == (c == ' ' || c == '\t' || c == '\r' || c == '1'));
+  }
+}
+
 TEST_CASE("JSON lines: a value that is cut off is none, whatever stands behind the line", "[output]") {
   constexpr std::string_view text = R"({"a":["b",{"c\"":"d"},true,null,[]],"e":"f"})";
   for (std::size_t size = 0; size <= text.size(); ++size) {

@@ -257,6 +257,36 @@ TEST_CASE("what the kernel says of a frame is kept: when it came, who sent it, a
   CHECK(entries[3].raw_dlc == 12);
 }
 
+TEST_CASE("the code of a length above eight is kept of a classic frame of eight bytes, and of no other") {
+  struct Row {
+    std::uint32_t id;
+    std::uint8_t length, code;
+    can::Format format;
+    std::uint8_t kept;
+  };
+  for (const Row& row : {Row{0x7FF, 8, 9, can::Format::base, 9}, Row{0x7FF, 8, 15, can::Format::base, 15},
+                         Row{0x7FF, 8, 8, can::Format::base, 0}, Row{0x7FF, 8, 16, can::Format::base, 0},
+                         Row{0x7FF, 7, 9, can::Format::base, 0},
+                         Row{0x1FFFFFFF | CAN_EFF_FLAG, 8, 9, can::Format::extended, 9},
+                         Row{0x123 | CAN_RTR_FLAG, 8, 9, can::Format::base_remote, 9},
+                         Row{0x123 | CAN_EFF_FLAG | CAN_RTR_FLAG, 8, 9, can::Format::extended_remote, 9},
+                         Row{0x40 | CAN_ERR_FLAG, 8, 9, can::Format::error, 0}}) {
+    CAPTURE(row.id, row.length, row.code);
+    Scene scene;
+    Waiting waiting;
+    waiting.frame.can_id = row.id;
+    waiting.frame.len = row.length;
+    waiting.frame.__res1 = row.code;  // len8_dlc
+    scene.played.queue = {waiting};
+    std::array<log::Entry, Capture::batch> entries;
+    REQUIRE(scene.capture->read(entries, 0) == 1);
+    CHECK(entries[0].id == (row.id & CAN_EFF_MASK));
+    CHECK(entries[0].format == row.format);
+    CHECK(entries[0].length == row.length);
+    CHECK(entries[0].raw_dlc == row.kept);
+  }
+}
+
 TEST_CASE("what was dropped is known with the next frame, without a look") {
   Scene scene;
   scene.played.room = 10;

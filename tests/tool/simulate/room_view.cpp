@@ -221,6 +221,33 @@ TEST_CASE("room view: trails have an end, and a robot at rest adds nothing to it
   CHECK(trails.of("a_robot_with_a_long_name").size() == 1);
 }
 
+TEST_CASE("room view: what is in a world decides what there is room for") {
+  // Line and column of the first thing that is drawn: 54 columns and 21 lines are for the room.
+  const auto place_of = [](const sim::SeenWorld& world, std::string_view what) {
+    const auto picture = draw_room(world, {}, {.beams = false}, {80, 23}, false);
+    for (std::size_t row = 1; row + 1 < picture.size(); ++row) {
+      std::string text;
+      for (const top::Piece& piece : picture[row]) text += piece.text;
+      if (const auto at = text.substr(0, 54).find(what); at != std::string::npos) return std::pair{row, at};
+    }
+    return std::pair{std::size_t{0}, std::size_t{0}};
+  };
+  // Without walls a robot has a metre around it, and so is in the middle of 2 m that are 21 lines high.
+  sim::SeenWorld open{"open", base::Time{}};
+  open.robots.push_back({"one", {7, -3, 0}, {7, -3}, 0.1, {}});
+  CHECK(place_of(open, ">") == std::pair{std::size_t{11}, std::size_t{20}});
+  // Two that are 4 m apart are a metre from the edges each.
+  open.robots.push_back({"two", {11, -3, sim::pi / 2}, {11, -3}, 0.1, {}});
+  CHECK(place_of(open, ">") == std::pair{std::size_t{5}, std::size_t{9}});
+  CHECK(place_of(open, "^") == std::pair{std::size_t{5}, std::size_t{44}});
+  // One wall is a world, too, whichever way it goes.
+  sim::SeenWorld wall{"wall", base::Time{}};
+  wall.walls.assign(1, sim::Segment{{5, 1}, {5, 2}});
+  CHECK(place_of(wall, "#") == std::pair{std::size_t{1}, std::size_t{0}});
+  wall.walls.assign(1, sim::Segment{{5, 1}, {6, 1}});
+  CHECK(place_of(wall, "####") == std::pair{std::size_t{1}, std::size_t{0}});
+}
+
 TEST_CASE("room view: figures that no world has do no harm") {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   constexpr double endless = std::numeric_limits<double>::infinity();

@@ -92,6 +92,48 @@ TEST_CASE("stats report: a table's widest line is what decides what it has room 
   CHECK(lines > 1000);
 }
 
+TEST_CASE("stats report: a table that just fits is as it is on a wider screen") {
+  stats::Report report = report_of(amiro::catalogue, log_text(), {500'000, 0});
+  report.buses.resize(1);
+  const std::size_t rows = report.buses[0].figures.topics.size() + 1;
+  std::size_t narrower = 0;
+  for (std::size_t columns = 200; columns > 90; --columns) {
+    const auto table = [&](std::size_t width) {
+      auto lines = stats::to_table(report, {}, false, width);
+      lines.resize(rows);
+      return lines;
+    };
+    const auto lines = table(columns);
+    std::size_t widest = 0;
+    for (const std::string& line : lines) widest = std::max(widest, extent(line).words);
+    CAPTURE(columns, widest);
+    REQUIRE(widest <= columns);
+    CHECK(table(widest) == lines);
+    narrower += widest < columns ? 1U : 0U;
+  }
+  CHECK(narrower > 10);
+}
+
+TEST_CASE("stats report: a row with any fault has a colour, and one without has none") {
+  stats::Report report;
+  report.buses.resize(1);
+  for (const unsigned missing : {0U, 1U})
+    for (const unsigned incomplete : {0U, 1U})
+      for (const unsigned wrong : {0U, 1U, 2U}) {
+        CAPTURE(missing, incomplete, wrong);
+        measure::TopicFigures topic;
+        topic.topic = amiro::catalogue.find("gyroscope");
+        topic.timing.missing = missing;
+        topic.incomplete = incomplete;
+        topic.wrong_dlc = wrong;
+        report.buses[0].figures.topics.assign(1, topic);
+        const auto lines = stats::to_table(report, {}, true, SIZE_MAX);
+        REQUIRE(lines.size() >= 2);
+        CHECK(lines[1].starts_with("\x1b[33m") == (missing + incomplete + wrong > 0));
+        CHECK_FALSE(lines[0].starts_with("\x1b"));
+      }
+}
+
 TEST_CASE("stats report: a bus without a name is called so") {
   stats::Report report = report_of(amiro::catalogue, log_text(), {500'000, 0});
   REQUIRE_FALSE(report.buses.empty());

@@ -35,6 +35,23 @@ TEST_CASE("top: times and numbers in six columns") {
   }
 }
 
+TEST_CASE("top: times and numbers at the ends of each unit") {
+  using ocm::base::Duration;
+  const auto before_and_at = [](Duration end) { return short_time(end - 1ns) + " " + short_time(end); };
+  CHECK(before_and_at(999'500ns) == "999us 1.0ms");
+  CHECK(before_and_at(9'950us) == "9.9ms 10ms");
+  CHECK(before_and_at(999'500us) == "999ms 1.0s");
+  CHECK(before_and_at(99'500ms) == "99.5s 2m");
+  CHECK(before_and_at(99min + 30s) == "99m 2h");
+  CHECK(before_and_at(99h + 30min) == "99h 4d");
+  CHECK(short_number(9.994) == "9.99");
+  CHECK(short_number(9.995) == "10.0");
+  CHECK(short_number(999.94) == "999.9");
+  CHECK(short_number(999.95) == "1000");
+  CHECK(short_number(999'999.4) == "999999");
+  CHECK(short_number(999'999.5) == "1000k");
+}
+
 TEST_CASE("top: a share that is too small for a digit is not nothing") {
   CHECK(percent(0) == "0.0%");
   CHECK(percent(0.0004) == "<0.1%");

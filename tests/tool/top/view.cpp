@@ -391,6 +391,20 @@ TEST_CASE("top: a field's graph") {
   CHECK(robot.names() == Names{"scale", "lamp_1", "7FF"});
 }
 
+TEST_CASE("top: on a screen that becomes higher a list is shown up to its end") {
+  Robot robot;
+  for (std::uint32_t id = 0x740; id < 0x780; ++id) robot.model().take(entry(1990ms, id, {1}));
+  robot.draw();
+  robot.view.press(Key{Kind::end});
+  robot.draw();
+  const auto lines = robot.draw({80, 40});  // 67 rows, of which 35 have a line
+  REQUIRE(lines.size() == 40);
+  CHECK(lines[4].starts_with("75D "));
+  CHECK(lines[38].starts_with("77F "));
+  const auto low = robot.draw();
+  CHECK(low[22].starts_with("77F "));
+}
+
 TEST_CASE("top: a list that is longer than the screen follows the cursor") {
   Robot robot;
   for (std::uint32_t id = 0x740; id < 0x780; ++id) robot.model().take(entry(1990ms, id, {1}));

@@ -314,6 +314,27 @@ class OnSerialLines(Case):
         process.stdin.close()
         process.stderr.close()
 
+    def test_the_reader_of_its_output_goes_while_nothing_is_said(self):
+        process = waiting.Program([AMIROCTL, "central", "--robot", f"AVR={self.robot().path}"], env=self.environment,
+                                  stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        self.addCleanup(process.kill)
+        process.stdin.write(b"list\n")
+        process.stdin.flush()
+        self.assertEqual(process.stdout.readline(), b"end of list\n")
+        process.stdout.close()
+        self.assertEqual(process.wait(timeout=60), 0)  # its input goes on
+        process.stdin.close()
+        process.stderr.close()
+
+    def test_what_comes_in_one_piece_is_answered_line_by_line(self):
+        """A link is there before the next word is obeyed, also where that is the * behind a line."""
+        talk = self.central(("AVR", self.robot()))
+        talk.type("start\nconn 0\n*drop 0\nlist\nconn 0\n*list\n")
+        talk.wait_for("command\n0:020000000000:AVR\nend of list\n")
+        self.assertEqual(talk.said, "scanning\nconnecting 0\nconnected 0\ncommand\nclosing 0\nclosed 0\n0:020000000000:AVR\nend of list\n"
+                                    "connecting 0\nconnected 0\ncommand\n0:020000000000:AVR\nend of list\n")
+        self.assertIn("links 2", talk.end())
+
     def test_a_full_disk(self):
         with open("/dev/full", "wb") as full:
             process = subprocess.run([AMIROCTL, "central", "--robot", "AVR=/dev/null"], env=self.environment,
@@ -434,6 +455,17 @@ class Many(Case):
             return self.run_tool("central", *robots, "--baud", "38401", code=2)[1]
         self.assertIn("a serial line has no speed 38401 here", refused(64))
         self.assertIn("central: 65 robots\n          it takes at most 64\n", refused(65))
+
+
+    def test_of_a_folder_as_many_lines_as_it_takes_each_once_and_by_their_names(self):
+        folder = os.path.join(self.folder, "ocm", "line")
+        os.makedirs(folder)
+        for number in reversed(range(70)):
+            for ending in ("", ".lock"):
+                open(os.path.join(folder, f"R{number:02}{ending}"), "w", encoding="ascii").close()
+        _, error = self.run_tool("central", stdin="start\nstop\nstart\n")
+        robots = [line.split()[0] for line in error.splitlines() if " links 0, " in line]
+        self.assertEqual(robots, [f"R{number:02}" for number in range(64)])
 
 
 class OnAPseudoTerminal(Case):

@@ -6,6 +6,7 @@ import subprocess
 import unittest
 
 import harness
+import operate_cases
 
 OTHER = os.path.join(harness.SOURCE, "examples", "other-robot", "topics.json")
 
@@ -94,6 +95,22 @@ class Words(harness.Case):
             out, err = self.run_tool("completion", *arguments, code=2)
             self.assertEqual(out, "")
             self.assertRegex(err, r"bash\|zsh\|fish|one of: bash, zsh, fish")
+
+
+class Requests(operate_cases.Operating, Words):
+    def test_where_a_request_leads(self):
+        """Asked of the operator that runs, of the bus that is named or of any; there may be none."""
+        self.start_sim()
+        switch = ("completion", "--words", "--", "operator", "switch")
+        self.assertEqual(self.run_tool(*switch, ""), ("words\n", ""))
+        halt = operate_cases.HALT
+        document = {**halt, "configurations": halt["configurations"] + [{"name": "slow", "streams": [operate_cases.ODOMETRY]}],
+                    "transitions": halt["transitions"] + [{"from": start, "to": end, "on_request": True}
+                                                          for start, end in (("driving", "slow"), ("driving", "halted"), ("slow", "halted"))]}
+        self.operate(document=document)
+        self.assertEqual(self.run_tool(*switch, "")[0], "words\nhalted\tfrom driving\nslow\tfrom driving\n")
+        self.assertEqual(self.run_tool(*switch, "--bus", "sim", "s")[0], "words\nslow\tfrom driving\n")
+        self.assertEqual(self.run_tool(*switch, "--bus=vcan7", "")[0], "words\n")
 
 
 class Shells(harness.Case):

@@ -2,6 +2,7 @@
 
 import os
 import re
+import subprocess
 
 import harness
 
@@ -339,6 +340,44 @@ class Config(harness.Case):
             self.assertIn(":2: tables within tables, more than 1000 deep", self.run_tool("list", code=2)[1])
         self.write("#" * 200_000)
         self.assertIn("larger than", self.run_tool("list", code=2)[1])
+
+    def test_so_many_points_in_a_line_and_no_more(self):
+        """Points of texts are none, nor those of the lines before."""
+        deep = "tables within tables, more than 1000 deep"
+
+        def points(count):
+            return ".".join(["a"] * (count + 1))
+        for text, line in ((points(1000) + " = 1", 0), (points(1001) + " = 1", 1), (f"# a comment\n{points(1000)} = 1", 0),
+                           (f"# a comment\n{points(1001)} = 1", 2), (f"{points(600)} = 1\nb.{points(600)} = 1", 0),
+                           (f"bus = '{'.' * 2000}'", 0), (f'bus = "{"." * 2000}"', 0), (f"bus = '\"{'.' * 2000}'", 0),
+                           (f"bus = '.' # {'.' * 999}", 0), (f"bus = '.' # {'.' * 1001}", 1)):
+            with self.subTest(text=f"{text[:20]} of {text.count('.')}"):
+                self.write(text + "\n")
+                process = self.start("list")
+                _, err = process.communicate(timeout=30)
+                self.assertEqual(f"{self.file}:{line}: {deep}" in err, line != 0, err[:200])
+                self.assertEqual(deep in err, line != 0, err[:200])
+
+    def test_no_color_of_the_environment_is_not_empty(self):
+        log = os.path.join(self.folder, "a.log")
+        with open(log, "w", encoding="utf-8") as file:
+            file.write("(1.0) can0 608#000000000000\n")
+
+        def shown(*options):
+            ours, theirs = os.openpty()
+            process = harness.waiting.Program([harness.AMIROCTL, "decode", "--pretty", log, *options], env=self.environment,
+                                              stdout=theirs, stderr=subprocess.DEVNULL)
+            self.assertEqual(process.wait(timeout=30), 0)
+            os.close(theirs)
+            text = os.read(ours, 4096)
+            os.close(ours)
+            self.assertIn(b"gyroscope", text)
+            return b"\x1b[" in text
+        self.assertTrue(shown())
+        self.assertFalse(shown("--no-color"))
+        for value in ("", "1", "0"):
+            self.environment["NO_COLOR"] = value
+            self.assertEqual(shown(), value == "", value)
 
 
 if __name__ == "__main__":

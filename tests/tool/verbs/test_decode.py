@@ -4,6 +4,7 @@ import gzip
 import json
 import os
 import re
+import struct
 import subprocess
 import time
 
@@ -174,6 +175,109 @@ class Decode(Case):
         # Both frames of a sample are shown, and requests are none.
         odometry = self.run_tool("decode", "--where", "odom.velocity.x=0.05", stdin=LOG)[0]
         self.assertEqual([event["frame"] for event in self.objects(odometry)], ["velocity", "pose"])
+
+    def samples_in_mcap(self, log, *words):
+        """Schemas by name and samples, as JSON, of a log that is converted to MCAP."""
+        path = os.path.join(self.folder, "samples.mcap")
+        self.run_tool(*words, "convert", self.file("samples.log", log), path, "--force")
+        schemas, channels, samples = {}, {}, []
+
+        def text(content, at):
+            end = at + 4 + struct.unpack_from("<I", content, at)[0]
+            return content[at + 4:end].decode(), end
+
+        def read(data):
+            at = 0
+            while at < len(data):
+                kind, size = struct.unpack_from("<BQ", data, at)
+                content, at = data[at + 9:at + 9 + size], at + 9 + size
+                if kind == 3:  # a schema
+                    name, end = text(content, 2)
+                    schemas[struct.unpack_from("<H", content)[0]] = (name, json.loads(text(content, text(content, end)[1])[0]))
+                elif kind == 4:  # a channel
+                    channels[struct.unpack_from("<H", content)[0]] = text(content, 4)[0]
+                elif kind == 5:  # a message
+                    samples.append((channels[struct.unpack_from("<H", content)[0]], content[22:].decode()))
+                elif kind == 6:  # a chunk
+                    self.assertEqual(text(content, 28)[0], "")  # not packed
+                    read(content[40:])
+
+        with open(path, "rb") as file:
+            read(file.read()[8:-8])
+        return ({name: schema for name, schema in schemas.values() if name != "ocm.CanFrame"},
+                [sample for sample in samples if not sample[0].endswith("/raw")])
+
+    def test_samples_and_their_schemas_in_mcap(self):
+        log = "".join(f"({number}.0) can0 {frame}\n" for number, frame in enumerate((
+            "608#0300FFFF0000", "605#00D20000", "607#01000000", "606#F0FFFFFF", "605#00D20000", "606#F0FFFFFF", "607#01000000",
+            "201#50C30000400D0300", "208#02", "608#00", "61E#03640AFF0A00")))
+        schemas, samples = self.samples_in_mcap(log)
+        self.assertEqual(samples, [
+            ("/gyroscope", '{"x":0.0525,"y":-0.0175,"z":0}'),
+            ("/magnetometer", '{"x":{"field":0.05376},"y":{"field":-0.000016},"z":{"field":0.000001}}'),
+            ("/motors", '{"x":0.05,"z":0.2}'),
+            ("/power_status", '{"flags":3,"state_of_charge":100,"minutes":65290,"power":10}')])
+
+        def properties(**described):
+            return {name: {"type": "number", "description": words} for name, words in described.items()}
+
+        self.assertEqual({name: schema["properties"] for name, schema in schemas.items()}, {
+            "AMiRo.gyroscope": properties(x="deg/s", y="deg/s", z="deg/s"),
+            "AMiRo.magnetometer": {axis: {"type": "object", "properties": properties(field="G")} for axis in "xyz"},
+            "AMiRo.motors": properties(x="m/s", z="rad/s"),
+            "AMiRo.power_status": properties(flags="bit 0 plugged, bit 1 charging", state_of_charge="%", minutes="min, 65535 unknown", power="mW")})
+        for name, schema in schemas.items():
+            self.assertEqual((schema["$schema"], "AMiRo." + schema["title"], schema["type"]),
+                             ("https://json-schema.org/draft/2020-12/schema", name, "object"))
+            self.assertNotEqual(schema["description"], "")
+
+    def test_a_sample_in_mcap_is_what_decode_prints(self):
+        folder = os.path.join(SOURCE, "tests", "tool", "verbs", "transcripts", "files")
+        with open(os.path.join(folder, "values.log"), encoding="ascii") as file:
+            log = file.read()
+        spec = ("--spec", os.path.join(folder, "values.dbc"))
+        out, _ = self.run_tool(*spec, "decode", "--json", stdin=log)
+        fields = re.findall(r'"topic":"(\w+)",.*?"fields":(\{.*?\}),"units"', out)
+        self.assertGreater(len(fields), 60)
+        schemas, samples = self.samples_in_mcap(log, *spec)
+        self.assertEqual(samples, [("/" + topic, text) for topic, text in fields])
+        self.assertEqual(set(schemas), {"values." + topic for topic, _ in fields})
+
+    def test_a_condition_is_that_of_each_interface(self):
+        """Level of can0 and of can1, which have an identifier each."""
+        specs = []
+        for number, bus in ((256, "can0"), (257, "can1")):
+            path = self.file(f"{bus}.dbc", f'BU_: A\nBO_ {number} Tank: 1 A\n SG_ Level : 0|8@1+ (1,0) [0|0] "" A\nBO_ 258 Pump: 1 A\n')
+            specs += ["--spec", f"{bus}={path}"]
+        log = "".join(f"({number}.0) {frame}\n" for number, frame in enumerate((
+            "can0 100#05", "can1 101#01", "can0 102#00", "can1 102#00", "can1 101#06", "can0 100#01", "can0 102#00", "can1 102#00",
+            "can0 101#07", "can0 102#00")))  # the last but one is of no message on can0
+
+        def shown(condition):
+            events = self.objects(self.run_tool(*specs, "decode", "--json", "--topic", "Pump", "--where", condition, stdin=log)[0])
+            return [(int(event["time_ns"]) // 10**9, event["bus"]) for event in events]
+
+        self.assertEqual(shown("Tank.Level>=5"), [(2, "can0"), (7, "can1")])
+        self.assertEqual(shown("Tank.Level<5"), [(3, "can1"), (6, "can0"), (9, "can0")])
+
+    def test_strict_counts_what_was_lost_and_what_was_malformed(self):
+        """Of J1939's transport protocol, each alone and one of each: a broadcast that has lost a packet, and an announcement of no form."""
+        truck = ("--spec", os.path.join(SOURCE, "examples", "truck.dbc"), "decode", "--json", "--strict")
+        good = "(1.0) can0 0CF00400#F07D7DE02E0000FF\n"
+        lost = "(2.0) can0 1CECFF00#20110003FFECFE00\n(2.1) can0 1CEBFF00#0157444239363334\n(9.0) can0 0CF00400#F07D7DE02E0000FF\n"
+        malformed = "(10.0) can0 1CECFF01#2011000300FFECFE\n"
+        for log, code in ((good, 0), (good + lost, 1), (good + malformed, 1), (good + lost + malformed, 1)):
+            _, err = self.run_tool(*truck, stdin=log, code=code)
+            self.assertEqual("timed out" in err, lost in log, err)
+            self.assertEqual("1 frame of another form" in err, malformed in log, err)
+
+    def test_strict_counts_each_fault(self):
+        """Frames of an unknown identifier and those whose selector chooses no field, as many of each as of the other and not."""
+        car = ("--spec", os.path.join(SOURCE, "examples", "small_car.dbc"), "decode", "--json", "--strict")
+        good, unselected, unknown = "(1.0) can0 400#0102030405060708\n", "(2.0) can0 400#0902030405060708\n", "(3.0) can0 7FF#01\n"
+        for some in range(3):
+            for others in range(3):
+                self.run_tool(*car, stdin=good + some * unselected + others * unknown, code=1 if some or others else 0)
 
     def test_a_choice_that_nothing_matches(self):
         car = os.path.join(SOURCE, "examples", "small_car.dbc")
@@ -529,6 +633,16 @@ class Encode(Case):
         self.run_tool("encode", "-o", path, stdin=json_lines)
         out, _ = self.run_tool("decode", path)
         self.assertEqual(out, json_lines)
+
+    def test_what_comes_through_a_live_pipe_is_written_at_once(self):
+        process = waiting.Program([AMIROCTL, "encode"], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, bufsize=1)
+        self._started.append(process)
+        for data in ("11", "22", "33"):
+            process.stdin.write(f'{{"time_ns":"1000000000","bus":"can0","id":"123","data":"{data}"}}\n')
+            process.stdin.flush()
+            self.assertEqual(process.stdout.readline(), f"(0000000001.000000) can0 123#{data}\n")
+        self.interrupt(process)
+        self.assertEqual(process.returncode, 130)
 
 
 class Send(Case):

@@ -24,6 +24,7 @@ class Doctor(Case):
         begin = time.monotonic()
         self.run_tool("doctor", "--patience", "300ms")
         self.assertGreaterEqual(time.monotonic() - begin, 1)
+        self.assertRegex(self.run_tool("doctor", "--help")[0], "--listen T=1s +.*\n +--patience T=500ms ")
 
     def test_a_robot_that_is_well(self):
         self.start_sim()

@@ -552,7 +552,8 @@ class BesideAMap(Case):
         self.assertEqual(self.map.returncode, 130)
         self.assertRegex(err, r"map: AVR is held by goto \(process \d+\); the others go on. To let it go on: "
                               r"amiroctl unpause AVR\n")
-        self.assertIn("map: AVR goes on\n", err)
+        self.assertEqual(err.count("map: AVR is held by "), 1)
+        self.assertEqual(err.count("map: AVR goes on\n"), 1)
 
     def test_a_program_that_dies_stops_its_robot_only(self):
         self.run_tool("goto", "AVR", "0", "0")

@@ -73,6 +73,12 @@ class Map(Case):
         with open(png, "rb") as file:
             self.assertEqual(file.read(8), b"\x89PNG\r\n\x1a\n")
         self.check_ros(pgm)
+        # The free area is that of the free cells of the picture.
+        with open(pgm, "rb") as file:
+            self.assertAlmostEqual(figures["free_m2"], re.sub(rb"^P5\n.*\n.*\n255\n", b"", file.read()).count(254) * 0.04**2, delta=1e-4)
+        # No other program has joined, and none has removed the socket.
+        self.assertNotIn("it serves the central's line", err)
+        self.assertNotIn("was removed", err)
 
     def check_ros(self, pgm):
         with open(pgm, "rb") as file:
@@ -103,7 +109,8 @@ class Map(Case):
         begin = time.monotonic()
         file = self.path("a.pgm")
         out, _ = self.map(file, "--watch", duration="1s")
-        self.assertIn("what was seen before --duration was over, in 1 s", out)
+        self.assertRegex(out, r"^what was seen before --duration was over, in 1 s: [01]\.\d\d m2 free, \d+ % of their border known; "
+                              r"[1-9]\d* updates? drawn, \d+ not, because a robot turned; 0 goals\n$")
         self.assertLess(time.monotonic() - begin, 11)
         self.assertNotIn("{U,", "".join(self.avr.heard))
         self.check_drawn(file)
@@ -145,6 +152,7 @@ class Map(Case):
         self.assertLess(figures["border_known"], 0.9)
         out, _ = self.map(self.path("a.pgm"), "--world", world, code=1, duration="60s")
         self.assertRegex(out, r"not all: the rest is out of the radio's range, in \d+ s: .* m2 free, \d+ % of their border known")
+        self.assertRegex(out, r"\nagreement with the true walls within 6 cm: precision [01]\.\d{3}, recall [01]\.\d{3}; explored [01]\.\d{3}\n$")
 
     def test_the_robot_is_lost(self):
         file = self.path("a.pgm")

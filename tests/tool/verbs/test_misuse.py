@@ -4,7 +4,8 @@ import re
 
 from harness import Case, main
 
-# What is typed, what is said is wrong, and the remedy. A new verb gets rows of its own.
+# What is typed, what is said is wrong, and the remedy. A new verb gets rows of its own. What an option was called before is
+# not offered.
 MISUSE = """
 list --jsn
 list: unknown option '--jsn'
@@ -458,6 +459,10 @@ replay x.log --fast
 replay: unknown option '--fast'
 `amiroctl replay --help` lists the options
 
+replay x.log --from-formt
+replay: unknown option '--from-formt'
+`amiroctl replay --help` lists the options
+
 replay x.log gyr
 replay: no topic 'gyr'
 did you mean 'gyro'?
@@ -473,6 +478,10 @@ did you mean 'sensors'?
 doctor --jsno
 doctor: unknown option '--jsno'
 did you mean '--json'?
+
+doctor --wacth
+doctor: unknown option '--wacth'
+`amiroctl doctor --help` lists the options
 
 doctor gyro
 doctor: unexpected argument 'gyro'
@@ -654,6 +663,10 @@ run a --spede 2
 run: unknown option '--spede'
 did you mean '--speed'?
 
+run a --lisen
+run: unknown option '--lisen'
+`amiroctl run --help` lists the options
+
 run a b
 run: unexpected argument 'b'
 usage: amiroctl run SCRIPT|- [OPTION ...]
@@ -761,6 +774,10 @@ write a whole number, such as 10
 robots --jsno
 robots: unknown option '--jsno'
 did you mean '--json'?
+
+robots --wacth
+robots: unknown option '--wacth'
+`amiroctl robots --help` lists the options
 
 robots x
 robots: unexpected argument 'x'

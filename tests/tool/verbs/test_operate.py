@@ -241,6 +241,7 @@ class Running(Operating):
         told = re.search(r"([0-9]+) frames that a kill would have lost from the black box", err)
         self.assertIsNotNone(told, err)
         self.assertLess(int(told[1]), 100_000)
+        self.assertEqual(err.count("amiroctl: operate: --black-box: "), 1, err)  # said once, and counted
         self.assertRegex(err, r"1 recording( lost)?\b")  # a short one has room
         self.assertIn("File too large", err)
 

@@ -11,6 +11,7 @@ import time
 
 from harness import SOURCE, main, waiting
 from operate_cases import HALT, ODOMETRY, Operating, REST
+from played_adapter import WithAdapter
 
 GUARDED = json.loads(json.dumps(HALT)) | {
     "configurations": [
@@ -32,7 +33,7 @@ def x_of(frame):
     return int.from_bytes(bytes.fromhex(frame[4:12]), "little", signed=True)
 
 
-class Asked(Operating):
+class Asked(WithAdapter, Operating):
     """amiroctl operator, and other programs that command the robot while an operator runs."""
 
     def test_the_shell_completes_where_a_request_leads(self):
@@ -393,6 +394,19 @@ class Asked(Operating):
         self.assertIn(f"operator halt (process {operator.pid}) has {bus} already, which was started in another environment", err)
         self.interrupt(operator)
         self.assertEqual(operator.returncode, 130)
+
+    def test_on_an_adapter_it_is_found_by_every_name_of_the_device(self):
+        played = self.adapter()
+        operator = self.operate(bus=f"slcan:{played.path}")
+        link = os.path.join(self.folder, "adapter")
+        os.symlink(played.path, link)
+        for name in (played.path, f"{played.path}@500k", link, f"{link}@500k"):
+            out, _ = self.run_tool("--bus", f"slcan:{name}", "operator", "status", "--json")
+            self.assertEqual(json.loads(out)["operator"], "halt", name)
+        other = os.path.join(self.folder, "other")
+        _, err = self.run_tool("--bus", f"slcan:{other}", "operator", "status", code=1)
+        self.assertIn(f"no operator of yours runs on slcan:{other}", err)
+        self.interrupt(operator)
 
     def test_its_socket_is_removed_and_comes_back(self):
         self.start_sim()

@@ -7,7 +7,7 @@ import shutil
 import unittest
 import xml.etree.ElementTree
 
-from harness import main
+from harness import SOURCE, main
 from operate_cases import GUARD, guard, Operate
 
 
@@ -156,6 +156,17 @@ class Checked(Operate):
         self.assertEqual(stated["others"], [])
         self.assertGreater(stated["load_per_mille"], study["driving"]["load_per_mille"])
 
+
+    def test_of_another_robot_s_boards_no_task_is_known(self):
+        """Also where they are called as the AMiRo's are."""
+        path = os.path.join(self.folder, "other.json")
+        with open(os.path.join(SOURCE, "spec", "topics.json"), encoding="utf-8") as file:
+            text = file.read()
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(text.replace('"robot": "AMiRo"', '"robot": "Other"'))
+        study = json.loads(self.run_tool("operate", GUARD, "--check", "--json", "--spec", path)[0])
+        self.assertEqual(sorted(study["sampling_not_counted"]), ["odometry", "power_status", "proximity_ring"])
+        self.assertEqual({stream["on_board_ns"] for each in study["configurations"] for stream in each["streams"]}, {None})
 
     def test_when_streams_are_back_after_a_reset_is_a_sum(self):
         study = json.loads(self.run_tool("operate", GUARD, "--check", "--json")[0])
@@ -384,6 +395,24 @@ class Mistakes(Operate):
             def change(document):
                 document["monitors"][1]["when"] = when
             self.refused(change, "/monitors/1/when", what)
+
+    def test_words_that_mean_nothing_beside_a_condition(self):
+        """Each kind of condition has words of its own; what it takes besides is the remedy."""
+        moves = "odometry.velocity.x>0.1m/s"
+        window = {"window": "1s"}
+        for when, word, remedy in (({"where": moves}, "above", "hysteresis"),
+                                   ({"age": "ring", "above": "250ms"}, "below", "above"),
+                                   ({"gap": "ring", "above": "250ms"}, "window", "above"),
+                                   ({"refusals": True}, "window", "above"),
+                                   ({"rate": "odometry", "below": 5} | window, "hysteresis", "above, below, window"),
+                                   ({"bus_load": True, "above": "60%"} | window, "hysteresis", "above, below, window"),
+                                   ({"bus_state": "off"}, "below", "leave it out"), ({"not": moves}, "hysteresis", "leave it out"),
+                                   ({"all": [moves]}, "above", "leave it out"), ({"any": [moves]}, "window", "leave it out")):
+            def change(document):
+                document["monitors"][1]["when"] = when | {word: "1s"}
+            with self.subTest(when=when):
+                kind = next(iter(when))
+                self.refused(change, f'/monitors/1/when/{word}: "{word}" means nothing beside "{kind}"\n          {remedy}\n')
 
     def test_any_file_is_a_problem_at_worst(self):
         for text in ("", "{", "[]", "null", '{"name": 3}', '{"name": "a", "name": "b"}', "\x00"):

@@ -120,6 +120,14 @@ class Plot(Case):
         self.assertIn((23.456, -525), piece)
         self.assertEqual(piece, sorted(piece))
 
+    def test_points_are_marked_where_there_are_two_hundred_at_most(self):
+        for count, kind in ((199, "linespoints"), (200, "linespoints"), (201, "lines")):
+            script = self.script(self.log([(i, "608#" + i16(0, 0, i)) for i in range(count)]), "gyro.z")
+            (piece,), = self.blocks(script)
+            self.assertEqual(len(piece), count)
+            marks = " pt 7 ps 0.5" if kind == "linespoints" else ""
+            self.assertIn(f"with {kind} lc rgb '#0072B2' lw 1.5{marks} notitle\n", script)
+
     def test_a_pause_parts_the_curve(self):
         frames = [(100 * i, "608#" + i16(0, 0, i)) for i in range(10)]
         frames += [(10_000 + 100 * i, "608#" + i16(0, 0, i)) for i in range(10)]
@@ -191,6 +199,26 @@ class Plot(Case):
             self.assertIn(what, err)
             self.assertIn("write a .pgm", err)
             self.assertNotIn("--script", err)
+
+    def test_what_gnuplot_says_is_in_the_message_alone(self):
+        """Its lines without empty ones and marks, in one."""
+        self.environment["PATH"] = self.folder + ":/usr/bin:/bin"
+        with open(os.path.join(self.folder, "gnuplot"), "w", encoding="ascii") as file:
+            file.write("#!/bin/sh\nprintf 'plot x\\n     ^\\n\\n\\tline 2: no font\\nend' >&2; exit 1\n")
+        os.chmod(os.path.join(self.folder, "gnuplot"), 0o755)
+        out, err = self.run_tool("plot", self.gyro(), "gyro.z", code=1)
+        self.assertEqual((out, err.split("\n")[0]), ("", "amiroctl: gnuplot draws nothing: plot x; \tline 2: no font; end"))
+
+    def test_the_address_of_the_live_page(self):
+        """Fields as an address has them, in their order."""
+        self.start_sim("--frozen")
+        spec = os.path.join(self.folder, "edges.dbc")
+        with open(spec, "w", encoding="ascii") as file:
+            file.write('BU_: N\nBO_ 256 azAZ09: 8 N\n SG_ zZaA9_0 : 0|8@1+ (1,0) [0|0] "" N\n')
+        for words, shows in ((("gyro.z", "ring.sensor_1"), "/gyroscope.z,/proximity_ring.sensor_1.proximity"),
+                             (("odom.velocity.x",), "/odometry.velocity.x"), (("--spec", spec, "azAZ09.*"), "/azAZ09.zZaA9_0")):
+            out, _ = self.run_tool("plot", "--live", *words, "--port", "0", "--duration", "100ms")
+            self.assertRegex(out, rf"^http://127\.0\.0\.1:[0-9]+/#plot={re.escape(shows)}\n$")
 
     def test_names_that_mean_something_to_gnuplot_or_xml(self):
         path = self.log([(100 * i, "608#" + i16(i, i, i)) for i in range(3)], "a'b<c>&{}_^`!.log")

@@ -345,6 +345,26 @@ class Recording(Case):
         self.run_tool(*words, "--force")
         self.assertEqual(self.ring("bb_"), ["bb_005.log", "bb_006.log"])
 
+    def test_a_ring_takes_over_one_file_more_than_it_keeps_and_no_more(self):
+        self.start_sim()
+        self.run_tool("publish", "gyro", "5ms")
+        words = ("record", "-o", self.path("bb.log"), "--split", "1h", "--ring", "2", "-n", "1")
+        for count, code in ((3, 0), (4, 1), (1, 0)):
+            for name in self.ring("bb_"):
+                os.unlink(self.path(name))
+            for number in range(1, count + 1):
+                with open(self.path(f"bb_{number:03}.log"), "w", encoding="ascii") as file:
+                    file.write("(1.000000) can0 123#\n")
+            _, err = self.run_tool(*words, code=code)
+            files = f"{count} file{'' if count == 1 else 's'}"
+            if code == 0:
+                self.assertIn(f"the ring holds {files} of earlier recordings, {self.path('bb')}_*.log; the oldest go first\n", err)
+                self.assertEqual(self.ring("bb_"), [f"bb_{number:03}.log" for number in (count, count + 1)])
+            else:
+                self.assertIn(f"{files} {self.path('bb')}_*.log are there, and --ring 2 would delete 3 of them now\n"
+                              "          give another name, or --force to delete them\n", err)
+                self.assertEqual(len(self.ring("bb_")), count)
+
     def test_a_file_that_is_deleted_is_an_error(self):
         self.start_sim()
         recorder = self.record("-o", "a.log")
@@ -447,6 +467,26 @@ class Recording(Case):
         line = recorder.stdout.readline()
         self.assertEqual(LINE.match(line.rstrip("\n")).group(3, 4), sent[0])
         self.interrupt(recorder)
+
+    def test_a_frame_that_is_read_live_does_not_wait_for_the_next_look_at_the_file(self):
+        """Each is sent when the one before has come: 20 seconds if each took the second in which a file is written."""
+        self.start_sim()
+        recorder = self.record("-o", "-")
+        begin = time.monotonic()
+        for number in range(20):
+            sent = self.send_numbered(1, number)
+            self.assertEqual(LINE.match(recorder.stdout.readline().rstrip("\n")).group(3, 4), sent[0])
+        self.assertLess(time.monotonic() - begin, 10)
+        self.interrupt(recorder)
+
+    def test_what_a_format_begins_with_is_in_a_file_before_the_first_frame_but_not_in_one_of_a_ring(self):
+        self.start_sim()
+        ring = self.record("-o", "ring.pcapng", "--split", "1h", "--ring", "1")
+        plain = self.record("-o", "plain.pcapng")
+        waiting.until(lambda: os.path.getsize(self.path("plain.pcapng")) > 0, "the beginning of the format")
+        self.assertEqual(os.path.getsize(self.path("ring_001.pcapng")), 0)  # it has had its second, too
+        self.interrupt(plain)
+        self.interrupt(ring)
 
     def test_two_buses_in_one_file(self):
         other = "sim:" + self.path("other.sock")
@@ -569,6 +609,8 @@ class Recording(Case):
         self.assertRegex(said, r"\d+ frames, [12]\d\d/s, sim [3-6] % full, 0 lost, [0-9.]+ (bytes|kB), "
                                r"[0-9.]+ \S+ free")
         self.assertLessEqual(said.count(" free"), 2)  # once a second
+        # No error frame came, so none is counted.
+        self.assertRegex(said, r"recorded \d+ frames in [2-9]\.\d+s to \S+a\.log, \d+\.\d kB\r\n$")
 
 
 if __name__ == "__main__":

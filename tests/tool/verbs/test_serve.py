@@ -858,6 +858,33 @@ print(lost, flush=True)
         _, port, _ = self.serve(log)
         self.assertIn("another program listens there", self.run_tool("serve", log, "--port", str(port), code=1)[1])
 
+    def test_beside_a_simulation_it_ends_with_that(self):
+        """The bus is still there then: nothing is lost, and nothing is complained of."""
+        server = self.start("sim", "--show=page", "--port", "0", "--allow-commands")
+        port, token = re.match(r"http://127\.0\.0\.1:(\d+)/#([0-9a-f]{32})\n$", server.stdout.readline()).groups()
+        viewer = self.viewer(int(port), token)
+        viewer.subscribe("/ocm/bus", "/motors")
+        self.state(viewer, "/ocm/bus", lambda bus: bus["buses"], "figures of the bus")
+        viewer.publish("/motors", {"x": 0.1, "z": 0})
+        self.assertEqual(viewer.message("/motors").fields["x"], 0.1)
+        _, err = self.interrupt(server)
+        self.assertEqual(server.returncode, 130)
+        self.assertNotIn("amiroctl:", err)
+
+    def test_only_for_whom_robots_drive_is_asked_whether_it_is_there(self):
+        """By a ping [RFC 6455, 5.5.2]; a viewer that looks on gets none, however much it is sent."""
+        self.start_sim()
+        self.run_tool("publish", "gyro", "10ms")
+        _, port, _ = self.serve()
+        viewer = self.viewer(port)
+        viewer.subscribe("/gyroscope", "/ocm/bus")
+        pings = []
+        send = viewer.send_frame
+        viewer.send_frame = lambda opcode, payload, final=True: (pings.append(payload) if opcode == 10 else None, send(opcode, payload, final))
+        for _ in range(200):
+            self.assertIsNotNone(viewer.message())
+        self.assertEqual(pings, [])
+
     def test_the_bus_goes_away(self):
         simulator = self.start_sim("--frozen")
         server, port, _ = self.serve()

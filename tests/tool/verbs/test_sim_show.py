@@ -1,9 +1,11 @@
 """amiroctl sim --show=text on a real terminal, tmux: what it draws, its keys, its sizes, and how it leaves the terminal."""
 
+import http.client
 import os
 import re
 import shlex
 import signal
+import socket
 import subprocess
 
 import harness
@@ -120,6 +122,42 @@ class Show(screens.Screens):
         _, refused = self.run_tool("sim", "--show=text", code=2)
         self.assertIn("sim --show=text draws on a terminal, and standard output is none", refused)
         self.assertIn("leave --show out", refused)
+
+    def test_the_page_of_a_simulation(self):
+        """Its address is printed once there is something to look at, and it ends with the simulation, which ends as without it."""
+        for options, shown in (((), ""), (("--world", "square", "--robots", "1"), "map")):
+            process = self.start("sim", "--show=page", "--port", "0", *options)
+            line = process.stdout.readline()
+            self.assertRegex(line, rf"^http://127\.0\.0\.1:\d+/{'#' + shown if shown else ''}\n$")
+            port = int(re.search(r":(\d+)/", line)[1])
+            connection = http.client.HTTPConnection("127.0.0.1", port, timeout=30)
+            connection.request("GET", "/")
+            self.assertEqual(connection.getresponse().status, 200)
+            connection.close()
+            _, err = self.interrupt(process)
+            self.assertEqual(process.returncode, 130)
+            self.assertNotIn("amiroctl:", err)
+            with self.assertRaises(OSError):
+                socket.create_connection(("127.0.0.1", port), timeout=5).close()
+
+    def test_the_page_of_a_simulation_in_a_browser(self):
+        """xdg-open is played; without --open it is not called."""
+        opened = os.path.join(self.folder, "opened")
+        browser = os.path.join(self.folder, "xdg-open")
+        with open(browser, "w", encoding="ascii") as file:
+            file.write(f'#!/bin/sh\necho "$@" > {opened}.part; mv {opened}.part {opened}\n')
+        os.chmod(browser, 0o755)
+        self.environment |= {"PATH": f"{self.folder}:{self.environment['PATH']}", "DISPLAY": ":7"}
+        for options in ((), ("--open",)):
+            process = self.start("sim", "--show=page", "--port", "0", *options)
+            address = process.stdout.readline()
+            if options:
+                harness.waiting.until(lambda: os.path.exists(opened), "that the browser is opened")
+                with open(opened, encoding="ascii") as file:
+                    self.assertEqual(file.read(), address)
+            self.interrupt(process)
+            self.assertEqual(process.returncode, 130)
+            self.assertEqual(os.path.exists(opened), bool(options))
 
     def test_wrong_usage(self):
         self.assertIn("--show", self.run_tool("sim", "--show=colour", code=2)[1])

@@ -1,8 +1,10 @@
 """amiroctl stats: figures of logs whose periods, gaps and losses are typed by hand; assertions; the live bus."""
 
+import gzip
 import json
 import os
 import signal
+import struct
 
 from harness import Case, main
 
@@ -317,6 +319,54 @@ class Stats(Case):
         self.assertEqual((values["bus"], values["topic"], values["priority"], values["count"], values["period_ns"]),
                          ("can0", "gyroscope", "high", "5", "500000000"))
         self.assertEqual(values["rate_hz"], "2.0")
+
+    def test_frames_that_the_log_says_were_lost(self):
+        """By interface: statistics blocks of pcapng [draft-ietf-opsawg-pcapng, 4.6], of which the last of each counts."""
+        def block(kind, body):
+            return struct.pack("<II", kind, len(body) + 12) + body + struct.pack("<I", len(body) + 12)
+
+        def option(code, value):
+            return struct.pack("<HH", code, len(value)) + value + bytes(-len(value) % 4)
+
+        def interface(name):
+            return block(1, struct.pack("<HHI", 227, 0, 0) + option(2, name) + option(9, b"\x09") + option(0, b""))  # CAN, of nanoseconds
+
+        def packet(number, ns):
+            frame = struct.pack(">IB3x", 0x608, 6) + bytes(6)
+            return block(6, struct.pack("<IIIII", number, ns >> 32, ns & 0xFFFFFFFF, len(frame), len(frame)) + frame + bytes(-len(frame) % 4))
+
+        def statistics(number, dropped):
+            return block(5, struct.pack("<III", number, 0, 0) + option(5, struct.pack("<Q", dropped)) + option(0, b""))
+        path = os.path.join(self.folder, "lossy.pcapng")
+        with open(path, "wb") as file:
+            file.write(block(0x0A0D0D0A, struct.pack("<IHHq", 0x1A2B3C4D, 1, 0, -1)) + b"".join(interface(name) for name in (b"can0", b"can1", b"can2"))
+                       + b"".join(packet(number, START * 10**9 + number) for number in range(3))
+                       + statistics(0, 3) + statistics(2, 4) + statistics(0, 5))
+        report, _ = self.report(path)
+        self.assertEqual([(bus["bus"], bus["frames"], bus["drops"]) for bus in report["buses"]], [("can0", 1, 5), ("can1", 1, 0), ("can2", 1, 4)])
+        out, _ = self.run_tool("stats", path)
+        self.assertEqual([line for line in out.splitlines() if "lost" in line], ["  5 frames lost", "  4 frames lost"])
+        _, err = self.run_tool("stats", path, "--assert", "bus.drops==0", code=1)
+        self.assertIn("does not hold: bus.drops==0: it is 5 on can0", err)
+
+    def test_a_log_whose_end_cannot_be_read_is_an_error_behind_its_figures(self):
+        """Of several logs any of them is."""
+        with open(self.log([(10 * i, f"608#{i % 256:02X}{i * 7 % 256:02X}00000000") for i in range(2000)], "all.log"), "rb") as file:
+            packed = gzip.compress(file.read())
+        paths = {}
+        for name, content in (("whole.log.gz", packed), ("cut.log.gz", packed[: len(packed) // 2])):
+            paths[name] = os.path.join(self.folder, name)
+            with open(paths[name], "wb") as file:
+                file.write(content)
+        whole, cut = paths["whole.log.gz"], paths["cut.log.gz"]
+        report, err = self.report(whole)
+        self.assertEqual((report["buses"][0]["topics"][0]["count"], err), (2000, ""))
+        for logs in ((cut,), (cut, whole), (whole, cut)):
+            report, err = self.report(*logs, code=1)
+            self.assertGreater(report["buses"][0]["topics"][0]["count"], 500)
+            self.assertIn("cut.log.gz", err)
+        # What is not read of it is not missed.
+        self.report(cut, "-n", "10")
 
     def test_wrong_words(self):
         _, err = self.run_tool("stats", "gyroscop", code=2)

@@ -193,6 +193,23 @@ class StuckOutput(Case):
         with open(out, encoding="utf-8") as file:
             self.assertEqual(len(file.readlines()), 20)
 
+    def test_a_reader_that_is_slow_gets_the_last_messages(self):
+        """Of what was said while it did not read; it has a second for that, in which the program sleeps."""
+        self.start_sim()
+        self.run_tool("publish", "gyro", "10ms")
+        reader, writer = self.full_pipe()
+        process = self.start_to(subprocess.DEVNULL, "record", "-o", os.path.join(self.folder, "out.log"), "-n", "20", stderr=writer)
+        os.close(writer)
+
+        def is_over():
+            with open(os.path.join(self.folder, "out.log"), encoding="utf-8") as file:
+                return len(file.readlines()) == 20
+        waiting.until(lambda: os.path.exists(os.path.join(self.folder, "out.log")) and is_over(), "all is recorded")
+        with os.fdopen(reader, encoding="utf-8") as said:
+            lines = said.read().lstrip("\n").splitlines()
+        self.assertEqual(process.wait(timeout=60), 0)
+        self.assertEqual([line.split()[0] for line in lines], ["bus:", "recording", "recorded"], lines)
+
     def test_a_terminal_that_is_held_holds_up_no_recording(self):
         """Ctrl-S, which a terminal obeys before any program reads it."""
         self.start_sim()

@@ -171,6 +171,23 @@ class Terminal(Case):
             self.assertLess(max(map(len, progress)), columns)
             self.assertEqual("free" in progress[0], columns == 200)
 
+    def test_only_on_a_terminal_a_line_is_drawn_again(self):
+        """Neither in a file nor where TERM says that it cannot be."""
+        def recorded(**environment):
+            return self.on_terminal("record", "-o", os.path.join(self.folder, "a.log"), "--force", "--duration", "1200ms", errors=True,
+                                    **environment)
+        for shown in (recorded(TERM="dumb"), self.run_tool("record", "-o", os.path.join(self.folder, "b.log"), "--duration", "1200ms")[1]):
+            self.assertIn("recording to ", shown)
+            self.assertNotIn("\033", shown)
+        self.assertIn("\r\033[K", recorded())
+
+    def test_a_terminal_of_two_rows_has_its_own_width(self):
+        """Of fewer rows there is none: it does not say how large it is."""
+        for rows, shows in ((2, 1), (3, 2), (1, 3)):  # its last one is left free; there are three, and the load
+            shown = self.on_terminal("stats", "--duration", "1200ms", "--no-color", columns=90, rows=rows)
+            live = shown.replace("\r\n", "\n").partition("\r\033[")[0].splitlines()
+            self.assertEqual(len(live) if rows != 1 else min(len(live), 3), shows, shown)
+
     def test_json_when_asked_for(self):
         shown = self.on_terminal("listen", "--json", "-n", "2", "--timeout", "5s")
         self.assertEqual(len(self.objects(shown)), 2)

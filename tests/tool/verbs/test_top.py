@@ -239,6 +239,39 @@ class Top(played_adapter.WithAdapter, screens.Screens):
         self.press(80, "q")
         self.assertEqual(self.ended(80)[-1], "END 0")
 
+    def test_a_log_that_is_wound_back_is_counted_anew(self):
+        self.open(130, "top", self.log(), rows=24)
+        self.shows(130, "gyroscope", "of 29.9 s")
+        self.press(130, "p", "0", "Right", "Right")
+        for keys, at, frames in (((), "20.0", 201), (("Left",), "10.0", 101), ((",",), " 9.0", 91), (("0",), " 0.0", 1), ((".",), " 1.0", 11)):
+            self.press(130, *keys)
+            self.shows(130, f"{at} of 29.9 s", f"{frames} frame{'' if frames == 1 else 's'}")
+            harness.waiting.until(lambda frames=frames: re.search(rf" 0 +{frames} x ", self.row(130, "gyroscope")), f"{frames} samples, no fault")
+        self.press(130, "q")
+        self.assertEqual(self.ended(130)[-1], "END 0")
+
+    def test_a_value_that_stays_is_a_flat_graph(self):
+        self.open(100, "top", self.log(), rows=24, before="export LC_ALL=C.UTF-8; ")
+        self.shows(100, "gyroscope", "of 29.9 s")
+        self.press(100, "p", "0", "Right", "Home", "Space")  # graphs of all its fields
+        self.shows(100, "10.0 of 29.9 s", "  x ", "  y ", "  z ", "▇█")
+        for name in ("  y ", "  z "):
+            self.assertRegex(self.row(100, name), r" ▁{20,} 0\.\.0$")
+        self.press(100, "q")
+        self.assertEqual(self.ended(100)[-1], "END 0")
+
+    def test_characters_that_a_terminal_does_not_have(self):
+        spec, log = (os.path.join(self.folder, name) for name in ("car.dbc", "car.log"))
+        with open(spec, "w", encoding="utf-8") as file:
+            file.write('BU_: ECU\nBO_ 291 Engine: 1 ECU\n SG_ Oil : 0|8@1+ (1,0) [0|255] "°C" ECU\n')
+        with open(log, "w", encoding="ascii") as file:
+            file.write("(1.0) can0 123#19\n")
+        for name, locale, unit in (("70", "C", "?C"), ("71", "C.UTF-8", "°C")):
+            self.open(name, "--spec", spec, "top", log, rows=24, before=f"export LC_ALL={locale}; ")
+            self.shows(name, f"Oil 25 {unit}")
+            self.press(name, "q")
+            self.assertEqual(self.ended(name)[-1], "END 0")
+
     def test_a_log_of_any_dbc(self):
         spec, log = (os.path.join(self.folder, name) for name in ("car.dbc", "car.log"))
         with open(spec, "w", encoding="ascii") as file:
@@ -278,7 +311,9 @@ class Top(played_adapter.WithAdapter, screens.Screens):
         self.open(120, "top", log, rows=24)
         self.shows(120, "gyroscope")
         self.press(120, "q")
-        self.assertEqual(self.ended(120)[-1], "END 1")
+        lines = self.ended(120)
+        self.assertEqual(lines[-1], "END 1")
+        self.assertIn("cut.log.gz: 1 place could not be read", " ".join(lines))
 
     def test_stopped_and_continued(self):
         """Ctrl-Z gives the shell its terminal back, and fg brings the table again."""

@@ -71,6 +71,21 @@ class Usage(Case):
         self.environment["AMIROCTL_BUS"] = "sim"
         self.refused(["once", "gyro"], "amiroctl sim", code=1)
 
+    def test_lines_that_no_mapper_serves_are_no_mappers(self):
+        """Links and files that a simulator has left behind, and a terminal that no program holds."""
+        lines = os.path.join(self.folder, "ocm", "line")
+        os.makedirs(lines, 0o700)
+        ours, theirs = os.openpty()
+        for name, target in (("AVR", "/nowhere"), ("Arduino", "/dev/null"), ("Nano", os.ttyname(theirs))):
+            os.symlink(target, os.path.join(lines, name))
+        with open(os.path.join(lines, "plain"), "w", encoding="ascii"):
+            pass
+        os.close(ours)
+        os.close(theirs)
+        self.refused(["once", "gyro"], "amiroctl: no bus: no CAN interface is up and no simulator runs\n", code=1)
+        self.refused(["--bus", "sim", "once", "gyro"], "amiroctl: no simulator is running: ", code=1)
+        self.assertNotIn("mappers run", self.run_tool("--bus", "sim", "once", "gyro", code=1)[1])
+
     def test_the_flag_goes_before_the_environment(self):
         self.environment["AMIROCTL_BUS"] = "sim"
         _, err = self.run_tool("--bus", "a-name-of-over-15-characters", "once", "gyro", code=1)

@@ -15,6 +15,20 @@ struct PlayedRegisters {
 };
 inline std::map<std::uintptr_t, PlayedRegisters*> played_registers;
 
+/// Registers at an address, for as long as it lives.
+class Attached {
+ public:
+  Attached(std::uintptr_t address, PlayedRegisters& registers) : address_(address) {
+    played_registers[address] = &registers;
+  }
+  ~Attached() { played_registers.erase(address_); }
+  Attached(const Attached&) = delete;
+  Attached& operator=(const Attached&) = delete;
+
+ private:
+  std::uintptr_t address_;
+};
+
 }  // namespace ocm::stm32_tests
 
 namespace ocm::firmware::drivers {
