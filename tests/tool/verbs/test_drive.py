@@ -233,6 +233,15 @@ class Alarm(WithAdapter, Drive):
 
 
 class Interrupted(Drive):
+    def test_a_script_says_where_its_drive_has_no_end(self):
+        self.start_sim()
+        words = "run: the drive goes on until Ctrl-C; --for, or a last step `drive stop`, ends it\n"
+        run = self.start("run", self.script("0s drive 5cm/s\n"))
+        self.assertEqual([run.stderr.readline() for _ in range(3)][1:], ["      0s  drive 5cm/s\n", words])
+        self.interrupt(run)
+        for steps in ("0s drive 5cm/s --for 200ms\n", "0s drive 5cm/s\n200ms drive stop\n"):
+            self.assertNotIn(words, self.run_tool("run", self.script(steps))[1])
+
     def test_a_travel_that_a_script_has_begun_is_ended(self):
         """The board would travel on without the script."""
         self.start_sim()
