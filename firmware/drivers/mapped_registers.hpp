@@ -1,17 +1,11 @@
-/// Registers of 32 bits: what drivers ask of them, and those of a chip. Tests have models in their place.
+/// Registers of 32 bits of a chip. Tests have models in their place.
 #pragma once
 
-#include <concepts>
 #include <cstdint>
 
-namespace ocm::firmware::drivers {
+#include "firmware/drivers/registers.hpp"
 
-/// `Register`: an enum of the registers' offsets. What is behind them works on between any two accesses.
-template <class R, class Register>
-concept RegistersOf = requires(R& registers, Register which, std::uint32_t value) {
-  { registers.read(which) } -> std::same_as<std::uint32_t>;
-  registers.write(which, value);
-};
+namespace ocm::firmware::drivers {
 
 /// The registers of a chip, mapped at `base`.
 template <class Register>

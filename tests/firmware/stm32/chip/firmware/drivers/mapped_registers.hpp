@@ -1,9 +1,10 @@
 /// In place of the chip's: the registers at an address are what a test has attached there.
 #pragma once
 
-#include <concepts>
 #include <cstdint>
 #include <map>
+
+#include "firmware/drivers/registers.hpp"
 
 namespace ocm::stm32_tests {
 
@@ -32,12 +33,6 @@ class Attached {
 }  // namespace ocm::stm32_tests
 
 namespace ocm::firmware::drivers {
-
-template <class R, class Register>
-concept RegistersOf = requires(R& registers, Register which, std::uint32_t value) {
-  { registers.read(which) } -> std::same_as<std::uint32_t>;
-  registers.write(which, value);
-};
 
 template <class Register>
 class MappedRegisters {
