@@ -82,7 +82,7 @@ namespace ocm::cli::words {
   return "it is a field of " + topics + ": " + example;
 }
 
-/// Of a sensor and one of its values, such as gyro.z: how that is shown; empty: it is none.
+/// How to see a topic's value such as gyro.z; empty: the word is not a topic with one of its values.
 [[nodiscard]] inline std::string topic_of_field(const protocol::Catalogue& catalogue, std::string_view word) {
   const std::size_t point = word.find('.');
   const auto* const topic = find_topic(catalogue, word.substr(0, point));
