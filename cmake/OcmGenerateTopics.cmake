@@ -35,6 +35,7 @@ function(_ocm_find_generator)
       if(NOT OCM_HOST_CXX)
         set(OCM_HOST_CXX c++)
       endif()
+      # Not optimised: it runs for a tenth of a second once a changed spec, and its compiler for half a minute.
       # Nothing of the cross build may reach the host's: neither its toolchain file nor CC, CXX and flags.
       set(clean_env ${CMAKE_COMMAND} -E env --unset=CC --unset=CXX --unset=CFLAGS --unset=CXXFLAGS --unset=LDFLAGS
                     --unset=CMAKE_TOOLCHAIN_FILE --unset=CMAKE_GENERATOR)
@@ -42,7 +43,7 @@ function(_ocm_find_generator)
         SOURCE_DIR ${host_project}
         BINARY_DIR ${build_dir}
         CONFIGURE_COMMAND ${clean_env} ${CMAKE_COMMAND} -G ${CMAKE_GENERATOR} -S <SOURCE_DIR> -B <BINARY_DIR>
-                          -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER=${OCM_HOST_CXX}
+                          -DCMAKE_BUILD_TYPE=None -DCMAKE_CXX_COMPILER=${OCM_HOST_CXX}
                           -DCMAKE_RUNTIME_OUTPUT_DIRECTORY=$<1:${build_dir}>
         BUILD_COMMAND ${clean_env} ${CMAKE_COMMAND} --build <BINARY_DIR> --config Release
         BUILD_ALWAYS ON

@@ -6,6 +6,7 @@
 #include <catch2/catch.hpp>
 
 #include "generator/spec/spec.hpp"
+#include "unit/base/explore.hpp"
 
 namespace generator_garbage_test {
 
@@ -79,7 +80,7 @@ TEST_CASE("mutated specs never crash, and are accepted or told why not") {
     return std::uniform_int_distribution<std::size_t>{0, n - 1}(random);
   };
   std::size_t accepted = 0;
-  for (int round = 0; round < 4'000; ++round) {
+  for (int round = 0, rounds = ocm::test::explored(4'000); round < rounds; ++round) {
     std::string text = specs[below(2)];
     for (std::size_t changes = 1 + below(3); changes > 0; --changes) {
       const std::size_t at = below(text.size());

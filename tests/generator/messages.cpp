@@ -16,6 +16,7 @@
 
 #include "generator/spec/spec.hpp"
 #include "generator/targets/target.hpp"
+#include "unit/base/explore.hpp"
 
 namespace generator_messages_test {
 
@@ -693,7 +694,7 @@ class RandomModel {
 };
 
 TEST_CASE("messages: any that both formats can say come back from each as they were") {
-  for (unsigned seed = 1; seed <= 300; ++seed) {
+  for (unsigned seed = 1, last = static_cast<unsigned>(ocm::test::explored(300)); seed <= last; ++seed) {
     CAPTURE(seed);
     check_both_ways(RandomModel{seed}.make());
   }

@@ -8,6 +8,7 @@
 #include "sim/mapper/world.hpp"
 #include "sim/worlds/reader.hpp"
 #include "tests/sim/worlds/read.hpp"
+#include "unit/base/explore.hpp"
 
 namespace sim_worlds_worlds_test {
 
@@ -251,7 +252,8 @@ TEST_CASE("mutated worlds never crash, and are accepted or told why not") {
   std::mt19937 random{1};
   const auto pick = [&](std::size_t n) { return static_cast<std::size_t>(random() % n); };
   int good_ones = 0;
-  for (int i = 0; i < 20'000; ++i) {
+  const int runs = ocm::test::explored(20'000);
+  for (int i = 0; i < runs; ++i) {
     std::string text = worlds[pick(2)];
     for (std::size_t n = 1 + pick(3); n > 0; --n) {
       const std::size_t at = pick(text.size());
@@ -265,7 +267,7 @@ TEST_CASE("mutated worlds never crash, and are accepted or told why not") {
     }
     good_ones += accepted(text);
   }
-  CHECK(good_ones > 100);  // some changes do not matter: the test reaches beyond the parser
+  CHECK(good_ones > runs / 200);  // some changes do not matter: the test reaches beyond the parser
 }
 
 }  // namespace sim_worlds_worlds_test

@@ -12,6 +12,7 @@
 #include "cli/operate/operator_file.hpp"
 #include "cli/operate/study.hpp"
 #include "tests/tool/golden.hpp"
+#include "unit/base/explore.hpp"
 
 namespace operate_any_value_test {
 
@@ -45,7 +46,9 @@ TEST_CASE("operate: every value of a file may be missing or wrong") {
     collect(document, Pointer{}, pointers);
     CHECK(pointers.size() > 100);
     std::size_t refused = 0, taken = 0;
-    for (const auto& at : pointers) {
+    const std::size_t step = test::sanitized ? 7 : 1;
+    for (std::size_t i = 0; i < pointers.size(); i += step) {
+      const auto& at = pointers[i];
       auto without = document, word = document, number = document;
       remove(without, at);
       word.at(at) = "none";
@@ -70,8 +73,8 @@ TEST_CASE("operate: every value of a file may be missing or wrong") {
         CHECK_FALSE(operate::to_table(study).empty());
       }
     }
-    CHECK(refused > 100);
-    CHECK(taken > 20);
+    CHECK(refused > 100 / step);
+    CHECK(taken > 20 / step);
   }
 }
 

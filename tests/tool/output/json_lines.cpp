@@ -11,6 +11,7 @@
 #include "ocm/topics/amiro.hpp"
 
 #include "cli/output/output.hpp"
+#include "unit/base/explore.hpp"
 #include "unit/log/entries.hpp"
 #include "unit/log/log_testing.hpp"
 
@@ -373,7 +374,7 @@ TEST_CASE("JSON lines: a log that is cut or damaged anywhere gives entries that 
   REQUIRE(whole.complained == 1);
   CHECK(whole.complaints[0].cause == log::Cause::syntax);  // its end is missing, and no more
   std::mt19937 random{5};
-  for (int i = 0; i < 20'000; ++i) {
+  for (int i = 0, runs = test::explored(20'000); i < runs; ++i) {
     std::string damaged = text;
     for (int flips = 0; flips < 3; ++flips)
       damaged[random() % damaged.size()] ^= static_cast<char>(1U << random() % 8);

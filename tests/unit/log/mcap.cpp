@@ -339,7 +339,7 @@ TEST_CASE("mcap: any bit flipped, and every entry can exist") {
   }
   const std::string whole{out.view()};  // the summary's bits say nothing
   std::uint64_t silent = 0;
-  for (std::size_t bit = 0; bit < whole.size() * 8; bit += test::coarser(7)) {
+  for (std::size_t bit = 0; bit < whole.size() * 8; bit += test::sanitized || test::emulated ? 7 : 1) {
     std::string file = whole + tail;
     file[bit / 8] = static_cast<char>(file[bit / 8] ^ 1 << bit % 8);
     const auto log = read_mcap(file);
