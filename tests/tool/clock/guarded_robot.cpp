@@ -197,13 +197,14 @@ TEST_CASE("operate: a robot that the example guards never touches a wall") {
 }
 
 TEST_CASE("operate: without what the sensors see the same driver touches walls") {
+  const unsigned runs = ocm::test::sanitized ? 4 : 20;
   unsigned touched = 0;
-  for (unsigned seed = 1; seed <= 20; ++seed) {
+  for (unsigned seed = 1; seed <= runs; ++seed) {
     Run run{seed, false};
     run.go();
     touched += run.touched ? 1 : 0;
   }
-  CHECK(touched > 10);
+  CHECK(touched > runs / 2);
 }
 
 }  // namespace tool_clock_guarded_robot_test

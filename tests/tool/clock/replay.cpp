@@ -389,8 +389,9 @@ TEST_CASE("replay: a stop of the program while the motors run ends it, whenever 
   std::vector<Duration> times;
   for (int i = 0; i < 40; ++i) times.push_back(i * 100ms);
   const auto entries = drive_at(times, false);
+  const Duration finest = sanitized ? 7001ns : 700ns;
   for (const Duration lasting : {300ms, 700ms, 5000ms})
-    for (Duration at = 2s; at < 2s + 110ms; at += at < 2s + 1ms ? Duration{700ns} : Duration{3ms}) {
+    for (Duration at = 2s; at < 2s + 110ms; at += at < 2s + 1ms ? finest : Duration{3ms}) {
       INFO("stopped at " << at.count() << " for " << lasting.count() << " ns");
       World world{1};
       world.stop(World::start + at, lasting);
