@@ -173,6 +173,27 @@ TEST_CASE("page drive: a board that says that it is at rest is not waited for lo
   CHECK(page.told(page.a).empty());
 }
 
+TEST_CASE("page drive: a server that did not run while the board was asked gives it the time again") {
+  Page page;
+  page.drives(0.1, page.a);
+  page.world.wait_until(World::start + 115ms);  // a little late, as on a busy machine
+  page.control.advance();
+  CHECK(page.moving().size() == 1);
+
+  Page late;
+  late.drives(0.1, late.a);
+  late.world.wait_until(World::start + 125ms);  // it did not run: what the board has said may wait
+  late.control.advance();
+  CHECK(late.moving().empty());
+  late.until(220ms);
+  CHECK(late.moving().empty());
+  late.until(230ms);
+  REQUIRE(late.moving().size() == 1);
+  CHECK(is_about(late.moving()[0], 225ms));
+  CHECK(late.questions() == 1);
+  CHECK(late.told(late.a).empty());
+}
+
 TEST_CASE("page drive: while the board drives by itself, a page does not") {
   Page page{{.incoming = {{World::start + 30ms, travels()}, {World::start + 600ms, at_rest()}}}};
   page.drives(0.1, page.a);
@@ -317,6 +338,21 @@ TEST_CASE("page drive: no set point waits behind another, and rest is tried unti
   CHECK(down.resting()[0] >= 903ms);
   CHECK(down.resting()[0] < 915ms);
   CHECK_FALSE(down.control.next());
+}
+
+TEST_CASE("page drive: a rest that the bus does not take is tried a hundred times a second") {
+  Page down{{.down = {{World::start + 250ms, World::start + 750ms}}}};
+  down.holds(0.1, down.a, 0ms, 200ms);
+  down.until(260ms);
+  down.drives(0, down.a);
+  const auto before = down.bus.counters().refused;
+  CHECK(before > 0);
+  down.until(660ms);
+  CHECK(down.bus.counters().refused - before >= 35);
+  CHECK(down.bus.counters().refused - before <= 41);
+  CHECK(down.resting().empty());
+  down.until(800ms);
+  CHECK(down.resting().size() == 1);
 }
 
 TEST_CASE("page drive: why a bus takes nothing") {

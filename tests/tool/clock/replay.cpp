@@ -496,6 +496,33 @@ TEST_CASE("replay: what has come late by a slow pipe is not sent at once when th
   CHECK(at_once <= 5);  // as late as motors wait for a set point
 }
 
+TEST_CASE("replay: a set point of a log that is late may wait for the bus as long as any other") {
+  const Silence silence;
+  const can::Frame moves{motors, 8, {100}};
+  const std::vector<log::Entry> entries{{base::Time{0ms}, moves, 0},
+                                        {base::Time{100ms}, moves, 0},
+                                        {base::Time{200ms}, can::Frame{0x601, 4, {1}}, 0},
+                                        {base::Time{200ms}, moves, 0},
+                                        {base::Time{300ms}, moves, 0},
+                                        {base::Time{400ms}, can::Frame{motors, 8, {}}, 0}};
+  // The first three come 250 ms apart: the third is 300 ms late, and the bus holds it for 250 ms more.
+  World world{1};
+  PlayedBus::Conditions conditions;
+  conditions.stuck = {{World::start + 700ms, World::start + 1s}};
+  OnOneBus<SlowLog> replayed{world, conditions, entries, std::size_t{3}};
+  auto& player = *replayed.player;
+  replayed.play();
+  CHECK_FALSE(player.held_up());
+  CHECK_FALSE(player.cut_short());
+  const auto& sent = replayed.sent();
+  REQUIRE(sent.size() == entries.size());
+  CHECK(sent[2].taken < World::start + 760ms);
+  CHECK(sent[3].taken >= World::start + 1s);
+  CHECK(sent[3].taken < World::start + 1010ms);
+  // Less than half a second late, nothing is put off: what is due follows at once.
+  for (std::size_t i = 4; i < sent.size(); ++i) CHECK(sent[i].taken - sent[i - 1].taken < 10ms);
+}
+
 constexpr can::Frame travels{0x20B, 8, {0x50, 0xC3, 0, 0, 0, 0, 0xE8, 3}};
 
 /// Two buses: motors that move on the first, which is gone after a second; a travel and motors on the second,

@@ -144,6 +144,11 @@ TEST_CASE("bounds: other frames, and those of other kinds, are of no row") {
     desk.take(i * 7ms, gyroscope - 1, {1, 2, 3, 4, 5, 6});
     desk.bounds.take(test::entry(i * 7ms, gyroscope, {1, 2, 3, 4, 5, 6, 7, 8}, can::Format::error));
     desk.bounds.take(test::entry(i * 7ms, gyroscope, {1, 2, 3, 4, 5, 6}, can::Format::extended));
+    can::AnyFrame fd;
+    fd.id = gyroscope;
+    fd.length = 6;
+    fd.flags = can::frame_flag::fd;
+    desk.bounds.take(log::Entry{test::morning + i * 7ms, fd});
   }
   CHECK(desk.rows()[0]["measured_ms"].is_null());
 }

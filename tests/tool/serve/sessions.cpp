@@ -200,6 +200,15 @@ TEST_CASE("sessions: orders for robots behind a central have a way of their own"
   const auto taken = fleet.take();
   REQUIRE(taken.size() == 1);
   CHECK(taken[0].payload == R"({"order":"look"})");
+  // All else is for the bus.
+  sessions.text(
+      viewer,
+      R"({"op":"advertise","channels":[{"id":2,"topic":"/motors","encoding":"json","schemaName":""}]})");
+  sessions.binary(viewer, "\x01\x02\0\0\0{\"x\":0.1}"s);
+  CHECK(fleet.take().empty());
+  const auto of_bus = orders.take();
+  REQUIRE(of_bus.size() == 1);
+  CHECK(of_bus[0].topic == "/motors");
   sessions.gone(viewer);
   CHECK(orders.take().back().kind == Order::Kind::gone);
   CHECK(fleet.take().back().kind == Order::Kind::gone);
@@ -213,6 +222,19 @@ TEST_CASE("sessions: orders for robots behind a central have a way of their own"
   CHECK(fleet.take().empty());
   CHECK(channels.all()[channels.of(State::map)].topic == "/ocm/map");
   CHECK(channels.all()[channels.of(State::fleet)].topic == "/ocm/fleet");
+}
+
+TEST_CASE("sessions: without robots behind a central, orders for them go the way of all others") {
+  Server server{true};
+  const ViewerId viewer = server.open(true);
+  server.sessions.text(
+      viewer,
+      R"({"op":"advertise","channels":[{"id":1,"topic":"/ocm/fleet","encoding":"json","schemaName":""}]})");
+  server.sessions.binary(viewer, "\x01\x01\0\0\0{\"order\":\"look\"}"s);
+  const auto orders = server.orders.take();
+  REQUIRE(orders.size() == 1);
+  CHECK(orders[0].kind == Order::Kind::publish);
+  CHECK(orders[0].topic == "/ocm/fleet");
 }
 
 TEST_CASE("sessions: channels of a viewer, up to 64, each once and in JSON") {

@@ -4,10 +4,17 @@ import json
 import os
 import re
 import signal
+import socket
+import struct
 import subprocess
+import sys
+import threading
 import time
 
 from harness import AMIROCTL, SOURCE, Case, main, waiting
+
+sys.path.insert(0, os.path.join(SOURCE, "tests", "peers", "logs"))
+from virtual_bus import FRAME, GOODBYE, HELLO, MAGIC, OVERRUN, VERSION  # noqa: E402
 
 
 class OnTheBus(Case):
@@ -287,6 +294,35 @@ class OnTheBus(Case):
             self.assertIn("it may be stopped (Ctrl-Z)", err)
         sim.send_signal(signal.SIGCONT)
         self.run_tool("listen", "--timeout", "100ms")
+
+    def test_what_listen_was_too_slow_for_is_counted(self):
+        """The simulator is played: it says of how many frames it had no room."""
+        os.makedirs(os.path.join(self.folder, "ocm"), mode=0o700)
+        path = os.path.join(self.folder, "ocm", "sim.sock")
+        server = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        self.addCleanup(server.close)
+        server.bind(path)
+        os.chmod(path, 0o600)
+        server.listen()
+        server.settimeout(10)
+
+        def serve():
+            node, _ = server.accept()
+            with node:
+                node.recv(32)
+                node.send(struct.pack("<B3xIIII12s", HELLO, MAGIC, VERSION, 500_000, 64, b"sim"))
+                for lost in (3, 4):
+                    node.send(struct.pack("<BBBxIq8s8x", FRAME, 0, 2, 0x7FF, time.time_ns(), b"\xDE\xAD"))
+                    node.send(struct.pack("<B7xQ16x", OVERRUN, lost))
+                node.send(struct.pack("<BB2xI24x", GOODBYE, 1, VERSION))
+
+        player = threading.Thread(target=serve)
+        player.start()
+        self.addCleanup(player.join)
+        out, err = self.run_tool("--bus", "sim", "listen", "--raw", code=1)
+        self.assertEqual([line.split()[2] for line in out.splitlines()], ["7FF#DEAD"] * 2)
+        self.assertIn("\n2 frames, 0 samples, 2 of unknown identifier, 7 lost in the receive queue\n", err)
+        self.assertIn("\n2 of 2 frames are of no topic of AMiRo: another robot? --spec FILE names the topics of another robot\n", err)
 
     def test_the_robot_moves_and_its_watchdog_stops_it(self):
         self.start_sim()

@@ -319,6 +319,19 @@ class Decode(Case):
         self.assertIn("4 of 8 frames contradict the spec of small_car (4 of no message): the others may be of another bus, too, and "
                       "mean something else. --spec FILE names its messages\n", err)
 
+    def test_contradictions_of_a_spec_that_has_topics_and_messages_speak_of_both(self):
+        with open(os.path.join(SOURCE, "tests", "generator", "probe.json"), encoding="utf-8") as file:
+            spec = json.load(file)
+        fields = [{"name": "Speed", "byte": 0, "type": "u16"}]
+        spec["messages"] = [{"name": "Engine", "id": "0x18FF1234", "format": "extended", "fields": fields}]
+        both = self.file("both.json", json.dumps(spec).encode())
+        _, err = self.run_tool("--spec", both, "decode", stdin="(0.0) can0 7FF#11\n" * 9, code=1)
+        self.assertIn("9 of 9 frames are of no topic or message of Probe: a log of another bus? --spec FILE names the topics or messages of "
+                      "another bus\n", err)
+        _, err = self.run_tool("--spec", both, "decode", stdin="(0.0) can0 7FF#11\n(0.1) can0 18FF1234#0019\n" * 4)
+        self.assertIn("4 of 8 frames contradict the spec of Probe (4 of no topic or message): the others may be of another bus, too, and "
+                      "mean something else. --spec FILE names its topics or messages\n", err)
+
     def test_senders_that_a_dbc_file_does_not_declare(self):
         spec = self.file("f.dbc", b'BO_ 1 A: 1 XXX\n SG_ a : 0|8@1+ (1,0) [0|0] "" XXX\nBO_ 2 B: 1 Dash\n')
         out, _ = self.run_tool("--spec", spec, "decode", "--json", "--sender", "XXX", stdin="(1.0) can0 001#05\n(2.0) can0 002#05\n")

@@ -106,6 +106,11 @@ class Serve(harness.Case):
             self.assertNotEqual(refused.exception.status, 101)
         self.assertEqual(self.viewer(port, offer="chat, foxglove.sdk.v1").protocol, "foxglove.sdk.v1")
 
+    def test_its_address_has_the_first_of_its_names(self):
+        self.start_sim("--frozen")
+        server = self.start("serve", "--port", "0", "--name", "robot.example", "--name", "other.example")
+        self.assertRegex(server.stdout.readline(), r"^http://robot\.example:\d+/\n$")
+
     def answer_to(self, port, *lines):
         """Status and text of what a request gets that http.client would not send."""
         with socket.create_connection(("127.0.0.1", port), timeout=10) as connection:
@@ -845,6 +850,32 @@ print(lost, flush=True)
         fresh = self.viewer(port)
         fresh.subscribe("/ocm/bus")
         self.state(fresh, "/ocm/bus", lambda s: s["viewers"] == 1, "the others have gone")
+
+    def test_as_many_viewers_as_there_may_be(self):
+        self.start_sim("--frozen")
+        _, port, _ = self.serve()
+        viewers = []
+
+        def close_all():
+            for viewer in viewers:
+                viewer.close()
+        self.addCleanup(close_all)
+
+        def is_let_in():
+            try:
+                viewers.append(websocket.Socket(port))
+            except websocket.Refused as refused:
+                self.assertEqual(refused.status, 403)
+                self.assertIn("there are too many viewers", refused.body)
+                return False
+            return True
+
+        for number in range(256):
+            self.assertTrue(is_let_in(), number)
+        self.assertFalse(is_let_in())
+        self.assertEqual(self.get(port)[0], 200)  # who only fetches is no viewer
+        viewers.pop().close()
+        harness.waiting.until(is_let_in, "that the place of one that has gone is free")
 
     # --- wrong usage ---
 

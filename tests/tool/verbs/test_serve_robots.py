@@ -139,6 +139,19 @@ class Robots(Case):
         self.assertAlmostEqual(robot["at"]["x_m"], 0, delta=0.02)
         self.state(viewer, lambda grid: 1 in self.cells(grid)[1], "a map", "/ocm/map")
 
+    def test_a_look_finds_a_robot_that_was_switched_on_later(self):
+        self.central.robots = [self.avr]
+        _, port, token = self.serve("--allow-commands", starts=(), scan=("--scan", "1s"))
+        viewer = self.viewer(port, token, "/ocm/fleet")
+        state = self.state(viewer, lambda s: len(s["robots"]) == 1 and s["robots"][0]["at"], "one robot, whose start need not be known")
+        self.assertEqual((state["unplaced"], state["scans"]), ([], False))
+        self.central.robots = [self.avr, self.arduino]
+        viewer.publish("/ocm/fleet", {"order": "look"})
+        self.state(viewer, lambda s: s["scans"], "that it looks")
+        self.robot(viewer, "Arduino", lambda r: r["linked"], "a link to it")
+        state = self.state(viewer, lambda s: not s["scans"] and len(s["unplaced"]) == 2, "that of two robots the starts must be known")
+        self.assertEqual(state["unplaced"], ["AVR", "Arduino"])
+
     # --- what is asked ---
 
     def test_a_click_sends_a_robot(self):
