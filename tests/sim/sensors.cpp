@@ -1,4 +1,7 @@
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include <catch2/catch.hpp>
@@ -286,6 +289,37 @@ TEST_CASE("infrared: a wall hides what is behind it, noise is the model's") {
   const auto counts = statistics(many, [&](std::uint64_t i) { return ring.read({}, sample({}, i))[2]; });
   CHECK(counts.mean == Approx(2420).margin(0.5));
   CHECK(counts.deviation == Approx(4.57).epsilon(0.03));
+}
+
+TEST_CASE("infrared: a converter counts from 0 to 65535") {
+  const auto ends = [](double offset_counts) {
+    RingModel ring;
+    ring.offset_counts.fill(offset_counts);
+    std::uint16_t least = 65535, most = 0;
+    for (std::uint64_t i = 0; i < 100; ++i)
+      for (const std::uint16_t counts : ring.read({}, sample({}, i))) {
+        least = std::min(least, counts);
+        most = std::max(most, counts);
+      }
+    return std::pair{least, most};
+  };
+  const auto [least, little] = ends(0);
+  CHECK(least == 0);
+  CHECK(little < 50);  // no more than noise
+  const auto [much, most] = ends(65535);
+  CHECK(much > 65'535 - 50);
+  CHECK(most == 65535);
+
+  const FloorModel floor;
+  Arena arena;
+  arena.floor_reflectance = arena.line_reflectance = 0;
+  std::uint16_t darkest = 65535;
+  for (std::uint64_t i = 0; i < 100; ++i)
+    for (const std::uint16_t counts : floor.read(arena, sample({}, i))) darkest = std::min(darkest, counts);
+  CHECK(darkest == 0);
+  arena.floor_reflectance = arena.line_reflectance = 100;  // more than there can be
+  const auto brightest = floor.read(arena, sample({}));
+  for (std::size_t i = 0; i < 4; ++i) CHECK(brightest[i] == 65535 - floor.offset_counts[i]);  // it comes off
 }
 
 TEST_CASE("floor: dark on the line, bright beside it") {

@@ -524,6 +524,44 @@ TEST_CASE("limits of the error counters, and which of them asks for an interrupt
     }
 }
 
+TEST_CASE(
+    "a transmitter at the last count of a state is in it, and one more error is in the next [RM0008 "
+    "24.7.6]") {
+  Running model;
+  const auto esr = [&model] { return model.read(Register::esr) & 7; };
+  const auto fails = [&model](End how, int times) {
+    for (int i = 0; i < times; ++i) {
+      REQUIRE(model.begin());
+      model.end(how);
+    }
+  };
+  model.request(0, 0x100, 1);
+  fails(End::bit_error, 1);
+  fails(End::acknowledged, 1);
+  CHECK(model.transmit_errors() == 7);
+  model.write(Register::tsr, 1);
+  model.request(0, 0x100, 2);
+  fails(End::bit_error, 15);
+  CHECK(model.transmit_errors() == 127);
+  CHECK(esr() == 1);
+  fails(End::no_acknowledge, 1);  // it was active: this counts
+  CHECK(model.transmit_errors() == 135);
+  CHECK(esr() == 3);
+  fails(End::no_acknowledge, 1);  // now it is passive
+  CHECK(model.transmit_errors() == 135);
+  fails(End::bit_error, 15);
+  CHECK(model.transmit_errors() == 255);
+  CHECK(esr() == 3);
+  fails(End::bit_error, 1);
+  CHECK(esr() == 7);
+  CHECK_FALSE(model.begin());
+
+  Running receiver;
+  for (int i = 0; i < 127; ++i) receiver.disturb();
+  receiver.deliver({0x100, 0, {}});
+  CHECK(receiver.read(Register::esr) >> 24 == 126);
+}
+
 TEST_CASE("bus-off without ABOM stays, and ends all but what is counted [RM0008 24.7.6]") {
   Running model;
   model.request(0, 0x100, 1);

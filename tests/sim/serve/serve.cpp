@@ -16,6 +16,7 @@
 #include <catch2/catch.hpp>
 
 #include "ocm/protocol/message.hpp"
+#include "ocm/protocol/request.hpp"
 #include "ocm/topics/amiro.hpp"
 #include "ocm/transport/bus.hpp"
 #include "ocm/transport/virtual_bus.hpp"
@@ -141,6 +142,10 @@ class Interface final : public transport::Bus {
   explicit Interface(std::vector<can::Frame> from_others) : from_others_(std::move(from_others)) {}
   std::string_view name() const override { return "can9"; }
   base::Result<bool> send(const can::Frame& frame) override {
+    if (full) {
+      ++refused;
+      return false;
+    }
     sent.push_back(frame);
     return true;
   }
@@ -154,6 +159,8 @@ class Interface final : public transport::Bus {
   const transport::Failure& failure() const override { return failure_; }
 
   std::vector<can::Frame> sent;
+  bool full = false;
+  int refused = 0;
 
  private:
   std::vector<can::Frame> from_others_;
@@ -190,6 +197,70 @@ TEST_CASE(
   sim::AmiroOptions without;
   without.without = {"di_wheel_drive"};
   CHECK_FALSE(drives(off, without, 300ms));
+}
+
+TEST_CASE(
+    "Boards whose frames find a CAN interface full offer them again each millisecond, and no more often") {
+  using namespace std::chrono_literals;
+  using Clock = std::chrono::steady_clock;
+  Interface bus{{protocol::once(amiro::Gyroscope::id, amiro::Gyroscope::priority)}};
+  bus.full = true;
+  const auto give_up = Clock::now() + 20s;
+  int turns = 0;
+  Clock::time_point begin, end;
+  const sim::Shell shell{[&] {
+                           end = Clock::now();
+                           if (bus.refused == 0) return end > give_up;
+                           if (turns++ == 0) begin = end;
+                           return turns > 100;
+                         },
+                         [](std::string_view) {}};
+  CHECK(sim::serve_amiro(bus, {}, shell).well());
+  CHECK(turns == 101);
+  CHECK(bus.refused >= 100);
+  CHECK(end - begin >= 90ms);
+}
+
+/// How often a simulation's loop goes round in a fifth of a second.
+int turns_of(const std::function<Ending(const sim::Shell& shell)>& serve) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds{200};
+  int turns = 0;
+  const sim::Shell shell{[&] {
+                           ++turns;
+                           return std::chrono::steady_clock::now() > end;
+                         },
+                         [](std::string_view) {}};
+  CHECK(serve(shell).well());
+  return turns;
+}
+
+TEST_CASE("A simulation with little to do waits until there is something") {
+  const Folder folder;
+  Interface bus{std::vector<can::Frame>{}};
+  protocol::FrameLayout layout;
+  layout.length = 8;
+  layout.address = {protocol::Address::By::identifier, false, 0x100};
+  protocol::Topic message;
+  message.name = "M";
+  message.kind = protocol::Kind::message;
+  message.frames = {&layout, 1};
+  message.cycle = std::chrono::milliseconds{50};
+  const protocol::Catalogue catalogue{"car", 500'000, {}, {&message, 1}};
+  CHECK(turns_of([&](const sim::Shell& shell) {
+          return sim::serve_messages(folder / "bus", catalogue, {}, shell);
+        }) < 100);
+  CHECK(turns_of([&](const sim::Shell& shell) { return sim::serve_messages(bus, catalogue, {}, shell); }) <
+        100);
+  CHECK(turns_of([&](const sim::Shell& shell) { return sim::serve_amiro(folder / "bus", {}, shell); }) <
+        2000);
+  CHECK(turns_of([&](const sim::Shell& shell) { return sim::serve_amiro(bus, {}, shell); }) < 2000);
+  for (const bool lines : {false, true}) {
+    CAPTURE(lines);
+    sim::MapperOptions mappers;
+    mappers.robots = 2;
+    mappers.lines = lines;
+    CHECK(turns_of([&](const sim::Shell& shell) { return sim::serve_mappers(mappers, shell); }) < 2000);
+  }
 }
 
 TEST_CASE("Two programs that drive an AMiRo in turns are named at its end") {

@@ -74,6 +74,23 @@ TEST_CASE("JSON lines: a string has no control characters, and blanks are three"
   }
 }
 
+TEST_CASE("JSON lines: what is passed over is 32 deep at most", "[output]") {
+  const auto skipped = [](const std::string& text) {
+    JsonScanner scanner{text};
+    return scanner.skip_value() && scanner.at_end();
+  };
+  const auto within = [](std::size_t depth, std::string_view begin, std::string_view inside, char end) {
+    std::string text;
+    for (std::size_t i = 0; i < depth; ++i) text += begin;
+    text += inside;
+    return text + std::string(depth, end);
+  };
+  CHECK(skipped(within(32, "[", "", ']')));
+  CHECK_FALSE(skipped(within(33, "[", "", ']')));
+  CHECK(skipped(within(31, R"({"a":)", "1", '}')));
+  CHECK_FALSE(skipped(within(32, R"({"a":)", "1", '}')));
+}
+
 TEST_CASE("JSON lines: a value that is cut off is none, whatever stands behind the line", "[output]") {
   constexpr std::string_view text = R"({"a":["b",{"c\"":"d"},true,null,[]],"e":"f"})";
   for (std::size_t size = 0; size <= text.size(); ++size) {

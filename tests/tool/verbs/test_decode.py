@@ -4,6 +4,7 @@ import gzip
 import json
 import os
 import re
+import resource
 import struct
 import subprocess
 import time
@@ -444,6 +445,24 @@ class Decode(Case):
                 result = subprocess.run([AMIROCTL, verb], input=text, stdout=full, text=True, stderr=subprocess.PIPE)
                 self.assertEqual(result.returncode, 1)
                 self.assertIn("cannot write", result.stderr)
+
+    def test_a_file_takes_the_place_of_another_where_it_may_have_so_much(self):
+        """To the last byte; with one less the older file stays as it was."""
+        log, old = self.file("a.log", LOG), "# an older file\n"
+        new = os.path.join(self.folder, "new.log")
+        self.run_tool("convert", log, new)
+        with open(new, encoding="ascii") as file:
+            text = file.read()
+        for limit in (len(text), len(text) - 1):
+            path = self.file("old.log", old)
+            process = self.start("convert", log, path, "--force",
+                                 preexec_fn=lambda limit=limit: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit)))
+            _, err = process.communicate(timeout=60)
+            enough = limit == len(text)
+            self.assertEqual(process.returncode, 0 if enough else 1, err)
+            self.assertEqual(f"cannot write {path}: File too large" in err, not enough, err)
+            with open(path, encoding="ascii") as file:
+                self.assertEqual(file.read(), text if enough else old)
 
     def test_memory_is_constant(self):
         process = waiting.Program([AMIROCTL, "decode", "-"], stdin=subprocess.PIPE, stdout=subprocess.DEVNULL,

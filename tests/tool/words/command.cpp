@@ -292,6 +292,14 @@ TEST_CASE("what is wrong is said of the word where it stands") {
   test::is_as_in("tests/tool/words/golden/command_errors.txt", whole);
 }
 
+TEST_CASE("a period that is written as a rate is met by the period, one in another unit by the units") {
+  CHECK(parse("publish gyro 20Hz").error == WordError{2, "'20Hz' is a rate", "write its period, 50ms"});
+  CHECK(parse("publish gyro 1.5kHz").error ==
+        WordError{2, "'1.5kHz' is a rate", "write its period, 667us"});  // the nearest that there is
+  CHECK(parse("publish gyro 5cm").error ==
+        WordError{2, "'5cm' is in another unit", "write 500ms, 2s or 900us"});
+}
+
 TEST_CASE("a robot without motors and lights has neither drive nor led, but set and send") {
   const protocol::Catalogue bare{"bare", 500'000, {}, {}};
   const CommandParser parser{bare};

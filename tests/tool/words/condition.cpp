@@ -150,6 +150,20 @@ TEST_CASE("floats and 64 bits without sign") {
   CHECK(holds(whole, Comparison::less, "-9223372036854775807", INT64_MIN));
 }
 
+TEST_CASE("digits that a decimal has no room for are compared where the wire has the number itself alone") {
+  auto wide = field(false);
+  wide.position.width = 64;
+  wide.raw_min = 0;
+  wide.raw_max = INT64_MAX;
+  wide.scale = {1, 0};
+  CHECK(Condition::of(wide, Comparison::equal, "18446744073709551615").ok());
+  wide.offset = {5, 0};
+  CHECK(Condition::of(wide, Comparison::equal, "18446744073709551620").error.starts_with("x takes"));
+  wide.offset = {};
+  wide.scale = {1, -1};
+  CHECK(Condition::of(wide, Comparison::equal, "1844674407370955161.5").error.starts_with("x takes"));
+}
+
 TEST_CASE("what is no value says what the field takes") {
   CHECK(Condition::of(field(), Comparison::equal, "fast").error ==
         "x takes off, on, or -3276.8 to 3276.7 m/s");

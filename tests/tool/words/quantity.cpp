@@ -114,6 +114,24 @@ TEST_CASE("units of another kind are refused") {
   }
 }
 
+TEST_CASE("the period of a rate is one to a nanosecond, from one in 30 years to 1 GHz") {
+  const auto nanoseconds = [](std::string_view text) {
+    const auto period = period_of_rate(text);
+    return period ? period->count() : -1;
+  };
+  CHECK(nanoseconds("20Hz") == 50'000'000);
+  CHECK(nanoseconds("20 Hz") == 50'000'000);
+  CHECK(nanoseconds("1.5kHz") == 666'667);
+  CHECK(nanoseconds("3kHz") == 333'333);
+  CHECK(nanoseconds("1000000kHz") == 1);
+  CHECK(nanoseconds("0.001Hz") == 1'000'000'000'000);
+  CHECK(nanoseconds("0.000000001Hz") == 1'000'000'000'000'000'000);
+  for (const char* text : {"0Hz", "-5Hz", "1000000001Hz", "0.0000000009Hz", "20", "20s", "20MHz", "Hz", ""}) {
+    CAPTURE(text);
+    CHECK_FALSE(period_of_rate(text));
+  }
+}
+
 TEST_CASE("durations print in the largest exact unit") {
   CHECK(to_text(base::Duration{500ms}) == "500ms");
   CHECK(to_text(base::Duration{1500ms}) == "1.5s");

@@ -28,6 +28,11 @@ TEST_CASE("the nearest known word is named") {
   const std::vector<std::string_view> cases{"ESP_E", "ESP_STATUS", "ESP_Status"};
   CHECK(nearest("esp_status", cases) == "ESP_STATUS");
   CHECK(nearest("esp_e", cases) == "ESP_E");
+  // From A to Z, and nothing beside them: '`' and '{' are 32 behind '@' and '['.
+  const std::vector<std::string_view> letters{"buzz", "alpaca", "`{`{"};
+  CHECK(nearest("BUZZ", letters) == "buzz");
+  CHECK(nearest("ALPACA", letters) == "alpaca");
+  CHECK(nearest("@[@[", letters) == "");
 }
 
 TEST_CASE(

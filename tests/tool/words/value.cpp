@@ -256,6 +256,15 @@ TEST_CASE("what a field takes is said with its range, or by its law") {
   CHECK(detail::takes(*distance) == "distance is 0.0038 to 0.2 m");
 }
 
+TEST_CASE("the near name of a value is found whatever the case of each letter is, from A to Z") {
+  constexpr protocol::NamedValue names[] = {{0, "zero"}, {1, "alpha"}};
+  protocol::Field field{"n", {0, 8, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, 255, {}};
+  field.values = names;
+  CHECK(detail::near_name(field, "ZERRO") == "did you mean 'zero'? ");
+  CHECK(detail::near_name(field, "ALPA") == "did you mean 'alpha'? ");
+  CHECK(detail::near_name(field, "GAMMA").empty());
+}
+
 TEST_CASE("a float is read with its unit or without, in another unit, and no further than it goes") {
   protocol::Field field{"f", {0, 32, protocol::ByteOrder::little}, false, {1, 0}, {}, "m", 0, 0, {}};
   field.number = protocol::Number::float32;
