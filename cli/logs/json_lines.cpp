@@ -30,7 +30,6 @@ std::string shown(std::string_view text) {
   return '"' + log::Complaints::printable(text) + '"';
 }
 
-/// The shortest frame that holds the layout.
 /// Of pages that exclude each other, too.
 bool has_common_bits(std::span<const protocol::Field> fields) {
   std::vector<std::uint8_t> taken;
@@ -46,6 +45,7 @@ bool has_common_bits(std::span<const protocol::Field> fields) {
   return false;
 }
 
+/// The shortest frame that holds the layout.
 std::uint8_t length_of(const log::Entry& entry, const protocol::FrameLayout& layout) {
   return entry.is_fd() ? log::fd_length(log::fd_dlc(layout.length)) : layout.dlc();
 }
@@ -539,6 +539,9 @@ bool JsonLineParser::put_request(log::Entry& entry, const protocol::Topic& topic
       return refuse(log::Cause::syntax, "no field " + shown(named.name), "a request has mode and period");
     JsonValue& value = named.name == "mode" ? mode_text : period_text;
     if (value) return refuse_twice("field", named.name);
+    if (!named.value)
+      return refuse(log::Cause::syntax, fmt::format("field {} has no value", shown(named.name)),
+                    "write a number or a string");
     value = named.value;
   }
   constexpr std::string_view modes[] = {"stop", "publish", "once"};

@@ -30,8 +30,7 @@ namespace detail {
 
 /// The candidate that differs in case only; else that which is fewest edits away: one in a short word, two in
 /// a longer one; of equally near ones that which begins alike for longer. Else the only one of which the word
-/// is the beginning, --dry-run of
-/// --dry. Empty: none.
+/// is the beginning, --dry-run of --dry. Empty: none.
 [[nodiscard]] inline std::string_view nearest(std::string_view word,
                                               std::span<const std::string_view> candidates) {
   for (const auto candidate : candidates)

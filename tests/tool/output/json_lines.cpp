@@ -326,6 +326,14 @@ TEST_CASE("JSON lines: what contradicts itself or is none is refused in words", 
   wrong(R"({"topic":"gyr","fields":{}})", "did you mean 'gyro'");
   wrong(R"({"topic":"magnetometer","fields":{}})", "several frames; frame is one of: x, y, z");
   wrong(R"({"topic":"gyro","frame":"request","fields":{"mode":"publish","period":1e-7}})", "period");
+  for (const std::string_view nothing : {"null", "true", "[5]"}) {
+    wrong(fmt::format(R"({{"topic":"gyro","frame":"request","fields":{{"mode":"publish","period":{}}}}})",
+                      nothing),
+          "field \"period\" has no value");
+    wrong(
+        fmt::format(R"({{"topic":"gyro","frame":"request","fields":{{"mode":{},"mode":"stop"}}}})", nothing),
+        "field \"mode\" has no value");
+  }
   wrong(R"({"topic":"gyro","frame":"request","fields":{"mode":"publish","period":"5mm"}})", "such as 0.5");
   CHECK(frame_of(R"({"topic":"gyro","frame":"request","fields":{"mode":"publish","period":"500ms"}})") ==
         frame_of(R"({"topic":"gyro","frame":"request","fields":{"mode":"publish","period":0.5}})"));
