@@ -112,11 +112,12 @@ Guarded::Own Timeline::commanded_by_operator() {
 
 void Timeline::send(const can::Frame& frame) {
   const bool set_point = other_.is_set_point(frame);
+  const bool behaviour = other_.is_behaviour(frame);
   other_.send(frame);
   if (set_point) outgoing_.otherwise_after_the_next(still_moving);
-  if (other_.is_behaviour(frame)) outgoing_.otherwise_after_the_next(still_travelling);
+  if (behaviour) outgoing_.otherwise_after_the_next(still_travelling);
   hand_over(frame);
-  behind_ = set_point ? 0 : behind_ + 1;
+  behind_ = set_point || behaviour ? 0 : behind_ + 1;
   refusals_.sent(frame, set_point && moving_);
   if (set_point) moving_ = !is_rest(frame);
 }

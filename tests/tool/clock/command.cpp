@@ -387,6 +387,24 @@ TEST_CASE("drive: a bus that has room a moment after the drive was given up gets
   }
 }
 
+TEST_CASE("behave: no set point is given to a bus that has not sent the first one") {
+  const Silence silence;
+  World world{1};
+  PlayedBus bus{world, stuck_for(60s)};
+  Timeline timeline{bus, amiro::catalogue, "behave", Timeline::Others::allowed, cli::Confirm::no, {}};
+  const auto& follow = *amiro::catalogue.find("follow");
+  client::Command command;
+  command.hold = client::Hold{
+      client::set_point(follow, std::vector<std::int64_t>{1000}), client::set_point(follow, {}), {}};
+  command.frames = {command.hold->frame};
+  timeline.carry_out(command);
+  CHECK_THROWS_AS(timeline.wait_for_end(), cli::Exit);
+  CHECK(world.now() - World::start < client::longest_without_set_point + client::hold_period);
+  REQUIRE(bus.sent().size() == 2);
+  CHECK(bus.sent()[0].frame == command.hold->frame);
+  CHECK(cli::is_rest(bus.sent()[1].frame));
+}
+
 TEST_CASE("drive: a signal ends the wait for the question to leave") {
   const Silence silence;
   World world{1};
