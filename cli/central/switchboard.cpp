@@ -228,15 +228,15 @@ void Switchboard::print_summary() const {
   const mapper::link::CentralCounters& counters = central_->counters();
   std::string text;
   const auto add = [&text](std::uint64_t count, std::string_view what) {
-    if (count != 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, what);
+    if (count != 0) text += (text.empty() ? "" : ", ") + counted(count, what);
   };
-  add(counters.refused_commands, "commands refused");
-  add(counters.unsent_bytes, "bytes for links that were gone or full");
-  add(counters.dropped_packets, "packets dropped with their link");
-  add(central_->waiting(), "packets not sent at the end");
-  add(counters.unlisted, "robots beyond the list");
-  add(counters.stray_reports, "stray reports");
-  add(unheard_bytes_, "bytes sent with no server connected");
+  add(counters.refused_commands, "command* refused");
+  add(counters.unsent_bytes, "byte* for links that were gone or full");
+  add(counters.dropped_packets, "packet* dropped with a link");
+  add(central_->waiting(), "packet* not sent at the end");
+  add(counters.unlisted, "robot* beyond the list");
+  add(counters.stray_reports, "stray report");
+  add(unheard_bytes_, "byte* sent with no server connected");
   remark(fmt::format("{:<{}}  {}", "server", width, text.empty() ? "nothing was lost" : text));
 }
 

@@ -34,9 +34,10 @@ bool halt(LineEnd& line, std::string_view verb, const std::vector<unsigned>& rob
   for (const unsigned index : driving)
     if (stops(index))
       remark(fmt::format(
-          "{}: {} may still drive: nothing shows that it has heard the stop, which was said {} "
-          "times; its leg ends after {} cm",
-          verb, line.robot(index).name, line.robot(index).times_said, mapper::server::longest_leg_cm));
+          "{}: {} may still drive: nothing shows that it has heard the stop, which was said {}; its "
+          "leg ends after {} cm",
+          verb, line.robot(index).name, counted(line.robot(index).times_said, "time"),
+          mapper::server::longest_leg_cm));
   return !any();
 }
 

@@ -87,7 +87,7 @@ int view_map(const MapOptions& options, JoinedLine& line) {
   if (options.json)
     fmt::print("{}\n", Json{{"watched", who}, {"seconds", seconds}, {"drawn", times}}.line());
   else
-    fmt::print("what {} drew in {:.0f} s, drawn {} times\n", who, seconds, times);
+    fmt::print("what {} drew in {:.0f} s, drawn {}\n", who, seconds, counted(times, "time"));
   return exit_code_after_interrupt(times != 0 && whole ? exit_success : exit_failure);
 }
 
