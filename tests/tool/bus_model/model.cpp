@@ -211,6 +211,41 @@ TEST_CASE("top: a set point is a sample of its actuator") {
   CHECK(row.newest.data(0).size() == 1);
 }
 
+// --- an actuator of two frames ---
+
+constexpr ocm::protocol::FrameLayout arm_frames[] = {{"upper", ocm::protocol::TopicId{0x40}, 1, lamp_fields},
+                                                     {"lower", ocm::protocol::TopicId{0x41}, 2, lamp_fields}};
+constexpr ocm::protocol::Topic arms[] = {[] {
+  ocm::protocol::Topic topic;
+  topic.name = "arm";
+  topic.id = ocm::protocol::TopicId{0x40};
+  topic.kind = ocm::protocol::Kind::actuator;
+  topic.frames = arm_frames;
+  return topic;
+}()};
+constexpr ocm::protocol::Catalogue digger{"digger", 250'000, boards, arms};
+
+TEST_CASE("top: of a set point in two frames each has its place") {
+  Model model{digger, 250'000};
+  const auto take = [&model](ocm::base::Duration at, std::uint8_t id, std::initializer_list<int> bytes) {
+    using namespace ocm::protocol;
+    model.take(entry(at, Identifier{Direction::command, Priority::low, TopicId{id}}.encode(), bytes));
+  };
+  take(0ms, 0x40, {11});
+  take(1ms, 0x41, {22, 33});
+  Row row = row_of(model, "arm", 2ms);
+  CHECK(row.count == 2);
+  REQUIRE(row.newest.bytes.size() == 16);
+  CHECK(row.newest.data(0)[0] == 11);
+  CHECK(row.newest.data(1)[0] == 22);
+  CHECK(row.newest.data(1)[1] == 33);
+  take(3ms, 0x40, {44});
+  row = row_of(model, "arm", 4ms);
+  REQUIRE(row.newest.bytes.size() == 16);
+  CHECK(row.newest.data(0)[0] == 44);
+  CHECK(row.newest.data(1)[1] == 33);
+}
+
 TEST_CASE("top: an unknown identifier has a row; of too many the frames are counted") {
   Model model{catalogue, 250'000};
   model.take(entry(0s, 0x7FF, {1, 2}));
@@ -282,6 +317,16 @@ TEST_CASE("top: a field that is followed has a value at each tick") {
   CHECK(values[1] == 101.0);  // 100 g and four quarters
   for (std::size_t i = 0; i < 2 * Model::history_size; ++i) model.tick();
   CHECK(model.history(weight).size() == Model::history_size);
+}
+
+TEST_CASE("top: a row of no spec has no field to follow") {
+  Model model{catalogue, 250'000};
+  model.take(entry(0ms, 0x7FF, {1}));
+  const FieldKey first{catalogue.topics.size(), 0, 0};
+  CHECK(model.follow(first));
+  model.tick();
+  REQUIRE(model.history(first).size() == 1);
+  CHECK(std::isnan(model.history(first)[0]));
 }
 
 TEST_CASE("top: a clock that is set back an hour") {

@@ -163,6 +163,10 @@ TEST_CASE("bus models: one a bus, each of which has a value a quarter of a secon
   CHECK(&models.of("left") == buses[0].model);
   CHECK(&models.of("right") == buses[1].model);
   CHECK(models.of("left").summary(morning).load_known);
+  Model same{amiro::catalogue, 250'000, 2'000'000};  // at these bit rates
+  same.take(entry(0ms, 0x608, {4, 0, 0, 0, 0, 0}));
+  CHECK(same.summary(morning + 100ms).load > 0);
+  CHECK(models.of("left").summary(morning + 100ms).load == same.summary(morning + 100ms).load);
   const FieldKey x{3, 0, 0};
   CHECK(models.follow(0, {x}));
   CHECK_FALSE(models.follow(0, {x}));

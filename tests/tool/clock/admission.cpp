@@ -155,6 +155,14 @@ TEST_CASE("admission: more identifiers than the load is computed of are refused"
   CHECK(heard(513 - others).find(words) != std::string::npos);
 }
 
+TEST_CASE("admission: what is heard may leave hardly any time, and is computed to its end") {
+  // 110 us of each 111: a frame of the gyroscope waits for some 30 ms, behind hundreds of others.
+  const std::string text = said({{"publish", "gyro", "50ms"}, {}, {{frame(0x111, {}), 0ms, 111us}}, true});
+  CAPTURE(text);
+  CHECK(text.find("does not fit") == std::string::npos);
+  CHECK(text.find("exit") == std::string::npos);
+}
+
 // --- what becomes of a behaviour ---
 
 can::Frame behaviour(int active, int ended, int more = 0) {

@@ -181,17 +181,22 @@ TEST_CASE("broadcasts: turns that a stop takes are late, and none is counted beh
     Duration stop, lasting;
     int rounds;
     std::uint64_t late;
+    Duration end = 2s;
   };
   // Every 500 ms for 2 s: at 0, 0.5, 1 and 1.5 s, each for 150 ms.
-  for (const Row& row : {Row{700ms, 6s, 2, 2},      // 1 and 1.5 s
-                         Row{580ms, 6s, 2, 3},      // 0.5 s, of which a part is sent, and the two behind it
-                         Row{580ms, 800ms, 4, 1},   // 0.5 s begins again at 1.38 s, in the turn of 1 s
-                         Row{580ms, 300ms, 4, 0},   // listeners wait for 0.5 s
-                         Row{510ms, 1200ms, 3, 2},  // 0.5 and 1 s
-                         Row{5s, 1s, 4, 0}}) {
+  for (const Row& row : {Row{700ms, 6s, 2, 2},     // 1 and 1.5 s
+                         Row{580ms, 6s, 2, 3},     // 0.5 s, of which a part is sent, and the two behind it
+                         Row{580ms, 800ms, 4, 1},  // 0.5 s begins again at 1.38 s, in the turn of 1 s
+                         Row{580ms, 300ms, 4, 0},  // listeners wait for 0.5 s
+                         Row{580ms, 720ms, 4, 0},  // and still do, 750 ms behind its last packet
+                         Row{580ms, 720ms + 1ns, 4, 1},           // and no longer: it begins again
+                         Row{510ms, 1200ms, 3, 2},                // 0.5 and 1 s
+                         Row{5s, 1s, 4, 0},                       // it is over
+                         Row{1400ms, 700ms, 4, 1, 2s + 1ns},      // 1.5 s; 2 s is before the end
+                         Row{1400ms, 1200ms, 3, 2, 2s + 1ns}}) {  // 1.5 and 2 s
     INFO(row.stop.count() << ", " << row.lasting.count());
     Counted counted;
-    counted.begin(0, client::Repeat{500ms, 2s});
+    counted.begin(0, client::Repeat{500ms, row.end});
     counted.play(World::start + row.stop, row.lasting);
     CHECK(counted.broadcasts.counts().late == row.late);
     CHECK(counted.broadcasts.counts().waited == 0);
@@ -262,6 +267,24 @@ TEST_CASE("broadcasts: what was to be sent once and waits is known") {
   CHECK(counted.broadcasts.waiting()[0]->message == &topics[1]);
 }
 
+TEST_CASE("broadcasts: what was to be sent once, waits, and is given other values counts as waited") {
+  Counted counted;
+  const auto waited = [&counted] { return counted.broadcasts.counts().waited; };
+  counted.begin(0);
+  counted.begin(1);
+  counted.advance();
+  counted.begin(1);
+  CHECK(waited() == 1);
+  CHECK(counted.broadcasts.size() == 2);
+  counted.begin(1, client::Repeat{1s, {}});
+  CHECK(waited() == 2);
+  counted.begin(1);  // in the place of what was to come again and again
+  CHECK(waited() == 2);
+  counted.begin(0);  // behind the one that is under way
+  CHECK(waited() == 2);
+  CHECK(counted.broadcasts.size() == 3);
+}
+
 TEST_CASE("broadcasts: what was late, waited, met another or was cut off is said") {
   const auto said_of = [](const std::vector<client::Command>& commands, World& world,
                           PlayedBus::Conditions conditions = {}) {
@@ -316,6 +339,23 @@ TEST_CASE("broadcasts: a bus that takes nothing ends the command") {
   timeline.carry_out(command(0, 1));
   CHECK_THROWS_AS(timeline.wait_for_end(), cli::Exit);
   CHECK(world.now() - World::start < 1s);
+}
+
+TEST_CASE("broadcasts: while no frame leaves two of a message wait, and no more") {
+  World world{1};
+  PlayedBus::Conditions conditions;
+  conditions.stuck = {{World::start + 80ms, Moment::max()}};
+  PlayedBus bus{world, conditions};
+  Timeline timeline{bus, truck, "set", Timeline::Others::allowed, cli::Confirm::no, {}};
+  const Leaving left = leaving([&] {
+    timeline.carry_out(command(1, 2));
+    static_cast<void>(timeline.wait_for_end());
+  });
+  CHECK(left.code == cli::exit_failure);
+  CHECK_THAT(left.text, Catch::Contains("amiroctl: set: can0 has taken no frame for 50"));
+  REQUIRE(bus.sent().size() == 4);  // of seven
+  CHECK(bus.sent()[1].left != Moment::max());
+  CHECK(bus.sent()[2].left == Moment::max());
 }
 
 /// Some at random times, with whatever stops program and bus for a while.

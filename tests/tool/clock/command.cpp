@@ -324,8 +324,8 @@ TEST_CASE("drive: no set point follows a stop that came before it was due, whate
   World world{1};
   world.stop(stop_at, 120ms);
   PlayedBus::Conditions conditions;
-  for (const Duration each : {10ms, 20ms, 30ms})
-    conditions.incoming.push_back({stop_at + each, {.id = 0x123, .dlc = 8}});
+  for (int each = 1; each <= 30; ++each)
+    conditions.incoming.push_back({stop_at + each * 1ms, {.id = 0x123, .dlc = 8}});
   can::Frame zero = drive(0s).frames.front();
   zero.data = {};
   conditions.incoming.push_back({stop_at + 40ms, zero});
@@ -538,10 +538,12 @@ TEST_CASE("set: after a stop nothing is sent behind the end of what is sent agai
   struct Row {
     Duration stop, lasting;
     std::size_t sent;
+    Duration end = 2s;
   };
   // Every 500 ms for 2 s: at 0, 0.5, 1 and 1.5 s.
   for (const Row& row : {Row{700ms, 6s, 2}, Row{700ms, 1s, 3}, Row{700ms, 1200ms, 3}, Row{700ms, 1400ms, 2},
-                         Row{1600ms, 6s, 4}, Row{700ms, 200ms, 4}}) {
+                         Row{1600ms, 6s, 4}, Row{700ms, 200ms, 4}, Row{1400ms, 700ms, 3},
+                         Row{1400ms, 700ms, 4, 2s + 1ns}}) {  // at 2 s, too
     INFO(row.stop.count() << ", " << row.lasting.count());
     const Silence silence;
     World world{1};
@@ -550,7 +552,7 @@ TEST_CASE("set: after a stop nothing is sent behind the end of what is sent agai
     const std::vector<std::string_view> words{"led", "1", "red"};
     auto led = cli::words::CommandParser{amiro::catalogue}.parse_line(words);
     REQUIRE(led.ok());
-    led->repeat = client::Repeat{500ms, 2s};
+    led->repeat = client::Repeat{500ms, row.end};
     world.stop(world.now() + row.stop, row.lasting);
     timeline.carry_out(*led);
     CHECK(timeline.wait_for_end());

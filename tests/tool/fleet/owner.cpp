@@ -282,8 +282,10 @@ TEST_CASE("owner: alone it serves no other program, and knows its robots") {
   CHECK(robot.order == 1);
   CHECK(robot.by == fmt::format("map (process {})", ::getpid()));
   CHECK_FALSE(owner.driven_by_other(5));
-  CHECK_FALSE(owner.driven_by_other(1000));
-  CHECK(owner.holder(1000).empty());
+  for (const unsigned index : {unsigned{cognitive::Fleet::most_robots}, 1000U}) {
+    CHECK_FALSE(owner.driven_by_other(index));
+    CHECK(owner.holder(index).empty());
+  }
   CHECK(owner.at_work(base::Time{1s}).empty());
   CHECK(owner.descriptor() == -1);
   CHECK(owner.turned_away() == 0);

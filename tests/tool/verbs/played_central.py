@@ -24,7 +24,8 @@ class Robot:
         self.loses = 0           # so many of its next set points
         self.silent = False      # says nothing
         self.mumbles = False     # says that it is idle, but never where it is
-        self.knows_who = True    # and answers {S,WHO}
+        self.knows_who = True    # and answers {S,WHO},
+        self.who_late = 0.0      # so many seconds later
         self.knows_compass = True  # and {C,number}
         self.calibration = 0     # number of the last one
         self.compass = (0, 0, 0, 0, 0, 0)       # what it says of that: verdict, x, y, field, error, use
@@ -41,6 +42,7 @@ class Robot:
         self.spoke = 0.0
         self.idled = 0.0
         self.asked = self.asked_compass = False
+        self.asked_at = 0.0      # the first time since it answered
 
     def hear(self, line, now):
         self.heard.append(line)
@@ -56,6 +58,7 @@ class Robot:
         elif line == "{S,UNP}":
             self.paused = False
         elif line == "{S,WHO}" and self.knows_who:
+            self.asked_at = self.asked_at if self.asked else now
             self.asked = True
         elif line.startswith("{C,"):
             self.hear_calibrate(int(line[3:-1]), now)
@@ -143,8 +146,9 @@ class Robot:
             self.finds.pop(0)
             self.compass = self.finds[0]
         text = self.say_compass() if self.asked_compass else ""
-        text += handshake if self.asked else ""
-        self.asked = False
+        if self.asked and now - self.asked_at >= self.who_late:
+            text += handshake
+            self.asked = False
         if not self.paused and not self.mumbles and now - self.spoke >= 0.05:
             self.spoke = now
             text += self.update()

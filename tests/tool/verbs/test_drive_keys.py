@@ -24,10 +24,10 @@ class Keys(harness.Case):
         self.start_sim("--frozen")
         self.listener = self.listen("motors", "--commands")
 
-    def drive(self, *arguments, term="xterm", stdout=None):
+    def drive(self, *arguments, term="xterm", stdout=None, columns=100):
         """Returns when it takes keys, if it shows them on the terminal."""
         primary, secondary = pty.openpty()
-        fcntl.ioctl(secondary, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 100, 0, 0))
+        fcntl.ioctl(secondary, termios.TIOCSWINSZ, struct.pack("HHHH", 24, columns, 0, 0))
         self.before = termios.tcgetattr(secondary)
         process = harness.waiting.Program([harness.AMIROCTL, "drive", "--keys", *arguments], stdin=secondary,
                                           stdout=secondary if stdout is None else stdout, stderr=subprocess.PIPE, text=True,
@@ -197,6 +197,23 @@ class Keys(harness.Case):
         os.write(self.primary, b"q")
         self.shows(b"  rests")
         process.communicate(timeout=30)
+
+    def test_its_keys_are_shown_where_the_line_has_room_for_them(self):
+        words = b"   arrows drive, space stops, + - speed, q quits"
+        line = b"10cm/s 45deg/s  rests"
+        needed = len(line + words) + 1  # the last column stays free
+        for columns in (needed, needed - 1, len(line) + 1):
+            with self.subTest(columns=columns):
+                process = self.drive(columns=columns)
+                if columns == needed:
+                    self.shows(words)
+                os.write(self.primary, b"q")
+                while b"  rests\r\n" not in self.shown and select.select([self.primary], [], [], 30)[0]:
+                    self.shown += os.read(self.primary, 4096)
+                self.assertIn(b"  rests\r\n", self.shown)
+                process.communicate(timeout=30)
+                self.assertNotIn(b"arrows", self.shown)  # no more, or not at all
+                self.close()
 
     def test_every_end_rests_the_motors(self):
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT):

@@ -207,8 +207,17 @@ class Map(Case):
             with self.subTest(knows=knows):
                 self.avr.knows_who = knows
                 self.run_tool("robots", "--scan", "200ms", "--listen", "200ms")
+                self.avr.heard.clear()
                 _, err = self.map(self.path("a.pgm"), duration="4s")
                 self.assertEqual("the usual one is taken" in err, drawn_as_usual, err)
+                if not knows:
+                    self.assertEqual(self.avr.heard.count("{S,WHO}"), 6)
+
+    def test_a_robot_is_given_time_to_say_its_size(self):
+        self.run_tool("robots", "--scan", "200ms", "--listen", "200ms")
+        self.avr.who_late = 1.5
+        _, err = self.map(self.path("a.pgm"), duration="1s")
+        self.assertNotIn("the usual one is taken", err)
 
     def test_two_robots_need_their_starts(self):
         self.central.robots.append(Robot("Arduino", pose=(0.8, 0.5, 0.0)))
