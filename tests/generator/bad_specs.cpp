@@ -1,12 +1,19 @@
 // bad_specs.json: what is changed in good.json, and all that must be said about it; bad_messages.json of
 // good_messages.json.
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
+#include "generator/spec/file.hpp"
 #include "generator/spec/reader.hpp"
 #include "generator/spec/spec.hpp"
 
@@ -159,6 +166,179 @@ TEST_CASE("a spec may be as deep and as large as is said, and names and units as
                                  "the accessor, such as \"gauss\""});
   CHECK(with(unit, unit + ", \"unit_name\": \"" + longest + '"').empty());
   CHECK(with(unit, unit + ", \"unit_name\": \"" + longest + "a\"").size() == 1);
+}
+
+/// good.json with another text in the place of one that is in it once.
+std::string good_with(const std::string& from, const std::string& to) {
+  std::string text = read("tests/generator/good.json");
+  const auto at = text.find(from);
+  REQUIRE(at != std::string::npos);
+  REQUIRE(text.find(from, at + 1) == std::string::npos);
+  return text.replace(at, from.size(), to);
+}
+
+TEST_CASE("a frame is as long as its fields, also where a single bit is all of it") {
+  const auto length = [](const char* fields) {
+    const auto loaded =
+        ocm::spec::parse(good_with(R"([{ "name": "angle", "bit": 0, "type": "u12" }])", fields), "f");
+    CHECK(printed(loaded.problems).empty());
+    REQUIRE(loaded.spec != nullptr);
+    return static_cast<int>(loaded.spec->model().topics.at(1).frames.at(1).dlc);
+  };
+  CHECK(length(R"([{ "name": "on", "bit": 0, "type": "u1" }])") == 1);
+  CHECK(length(R"([{ "name": "on", "bit": 7, "type": "u1" }])") == 1);
+  CHECK(length(R"([{ "name": "on", "bit": 8, "type": "u1" }])") == 2);
+  CHECK(length(R"([{ "name": "on", "bit": 63, "type": "u1" }])") == 8);
+  CHECK(length(R"([{ "name": "on", "bit": 0, "type": "u1", "byte_order": "big" }])") == 1);
+}
+
+TEST_CASE("a range may have a single raw number in it, and no fewer") {
+  const auto held = [](const std::string& range) {
+    const auto loaded = ocm::spec::parse(good_with(R"("range": [-500, 500])", "\"range\": " + range), "f");
+    std::vector<std::int64_t> raw;
+    if (loaded.spec == nullptr) return raw;
+    const auto& field = loaded.spec->model().topics.at(0).frames.at(0).fields.at(0);
+    raw = {field.raw_min, field.raw_max};
+    return raw;
+  };
+  using Raw = std::vector<std::int64_t>;
+  CHECK(held("[0, 0]") == Raw{0, 0});
+  CHECK(held("[0.0175, 0.0175]") == Raw{1, 1});
+  CHECK(held("[-0.0175, 0]") == Raw{-1, 0});
+  CHECK(held("[-573.44, 573.4225]") == Raw{-32768, 32767});
+  CHECK(held("[573.4225, 573.4225]") == Raw{32767, 32767});
+  CHECK(held("[-573.44, -573.44]") == Raw{-32768, -32768});
+  CHECK(held("[0.01, 0.0174]").empty());
+  CHECK(held("[-573.4401, 0]").empty());
+  CHECK(held("[0, 573.4226]").empty());
+}
+
+TEST_CASE("a topic has 255 frames, and no more, their counts included") {
+  const auto problems = [](int count) {
+    return printed(
+        ocm::spec::parse(R"({"robot": "r", "namespace": "r", "bus": {"bit_rate": 500000, "source": "s"},
+      "boards": [{"name": "b", "mcu": "m", "source": "s"}],
+      "topics": [{"name": "t", "id": 0, "board": "b", "source": "s", "frames": [
+        {"name": "one", "id": 0, "count": )" +
+                             std::to_string(count) +
+                             R"(, "dlc": 0, "fields": []},
+        {"name": "last", "id": 255, "dlc": 0, "fields": []}]}]})",
+                         "f")
+            .problems);
+  };
+  CHECK(problems(254).empty());
+  CHECK(problems(255) ==
+        std::vector<std::string>{"f:3: /topics/0/frames: 256 frames with their counts; at most 255"});
+}
+
+TEST_CASE("what is derived wrongly takes no name from what is derived well") {
+  const std::string derived =
+      R"({ "name": "near", "of": "field", "law": "inverse_square", "at_one": 2, "offset": 1, "noise": 1, )"
+      R"("unit": "m", "range": [0.1, 1] })";
+  const std::string fields = R"([{ "name": "field", "byte": 0, "type": "i24" }, )"
+                             R"({ "name": "mode", "byte": 3, "type": "u8", "values": { "off": 0 } }, )"
+                             R"({ "name": "state", "byte": 4, "type": "u8", "flags": { "ready": 0 } }])";
+  const auto problems = [&](const std::string& from, const std::string& to) {
+    std::string first = derived;
+    REQUIRE(first.find(from) != std::string::npos);
+    first.replace(first.find(from), from.size(), to);
+    return printed(ocm::spec::parse(good_with(R"([{ "name": "field", "byte": 0, "type": "i24" }])",
+                                              fields + R"(, "derived": [)" + first + ", " + derived + "]"),
+                                    "f")
+                       .problems);
+  };
+  const std::string at = "f:27: /topics/1/frames/0/derived/0";
+  using Lines = std::vector<std::string>;
+  CHECK(problems(R"("near")", R"("far")").empty());
+  CHECK(problems(R"("of": "field")", R"("of": "mode")") ==
+        Lines{at + R"(/of: "mode" has names of values; a field that measures something)"});
+  CHECK(problems(R"("of": "field")", R"("of": "state")") ==
+        Lines{at + R"(/of: "state" has names of values; a field that measures something)"});
+  CHECK(problems(R"("of": "field")", R"("of": "fild")") ==
+        Lines{at + R"(/of: the frame has no field "fild"; the name of one of its fields)"});
+  CHECK(problems(R"("of": "field", )", "") ==
+        Lines{at + R"(: no "of"; add "of": the field of the frame from which it follows)"});
+  CHECK(problems(R"("at_one": 2)", R"("at_one": 0)") ==
+        Lines{at + "/at_one: not above zero; what is measured above the offset where the quantity is 1"});
+  CHECK(problems("[0.1, 1]", "[0, 1]") ==
+        Lines{at + "/range: the range begins at or below zero; above zero: [0.004, 0.2]"});
+  CHECK(problems(R"(, "range": [0.1, 1])", "") ==
+        Lines{at + R"(: no "range"; add "range": the values at which the law holds, [0.004, 0.2])"});
+  CHECK(problems(R"("offset": 1)", R"("offset": [1, 2, 3])") ==
+        Lines{at + "/offset: 3 offsets for 2 frames; what is measured when nothing is there: a number, or a "
+                   "list with one for each of the frame's count"});
+}
+
+TEST_CASE("scale and offset have exponents of fewer than 80, either way") {
+  const auto is_good = [](const std::string& scale, const std::string& offset) {
+    const auto loaded =
+        ocm::spec::parse(good_with(R"("bit": 0, "type": "u12")", R"("bit": 0, "type": "u12", "scale": )" +
+                                                                     scale + R"(, "offset": )" + offset),
+                         "f");
+    if (!loaded.problems.empty())
+      CHECK(printed(loaded.problems) ==
+            std::vector<std::string>{
+                "f:28: /topics/1/frames/1/fields/0/scale: scale and offset have too many digits for 12 bits; "
+                "raw number times the digits of the scale, plus offset, must stay within 18 digits"});
+    return loaded.problems.empty();
+  };
+  CHECK(is_good("1e79", "0"));
+  CHECK_FALSE(is_good("1e80", "0"));
+  CHECK(is_good("1e-79", "0"));
+  CHECK_FALSE(is_good("1e-80", "0"));
+  CHECK(is_good("1e79", "1e79"));
+  CHECK_FALSE(is_good("1e79", "1e80"));
+  CHECK(is_good("1e-79", "1e-79"));
+  CHECK_FALSE(is_good("1e-79", "1e-80"));
+  // So many digits that the offset and the greatest raw number, 4095, have no sum in 63 bits.
+  CHECK(is_good("1", "9223372036854771712"));
+  CHECK_FALSE(is_good("1", "9223372036854771713"));
+  CHECK_FALSE(is_good("1", "1e20"));
+  CHECK_FALSE(is_good("1", "1e-20"));
+}
+
+TEST_CASE("a spec has as many topics as there are numbers, and no more") {
+  const auto problems = [](int count) {
+    std::string topics;
+    for (int i = 0; i < count; ++i)
+      topics += std::string{i == 0 ? "" : ", "} + R"({"name": "t)" + std::to_string(i) + R"(", "id": )" +
+                std::to_string(i % 256) +
+                R"(, "board": "b", "source": "s", "frames": [{"dlc": 0, "fields": []}]})";
+    return printed(
+        ocm::spec::parse(R"({"robot": "r", "namespace": "r", "bus": {"bit_rate": 500000, "source": "s"},
+      "boards": [{"name": "b", "mcu": "m", "source": "s"}], "topics": [)" +
+                             topics + "]}",
+                         "f")
+            .problems);
+  };
+  CHECK(problems(256).empty());
+  CHECK(problems(257) ==
+        std::vector<std::string>{"f:2: /topics: 257 topics; at most 256: a topic's number has 8 bits"});
+}
+
+TEST_CASE("an id has sixteen digits at most") {
+  const auto problems = [](const std::string& id) {
+    return printed(ocm::spec::parse(good_with(R"("id": "0x08")", "\"id\": \"" + id + '"'), "f").problems);
+  };
+  CHECK(problems("0x0000000000000008").empty());
+  CHECK(problems("0x00000000000000008") ==
+        std::vector<std::string>{"f:11: /topics/0/id: \"0x00000000000000008\" is not an id; a topic's number "
+                                 "has 8 bits: \"0x00\" to \"0xFF\""});
+}
+
+TEST_CASE("a file may be as large as is said, and not a byte larger") {
+  const std::filesystem::path file = std::string{OCM_SOURCE_DIR} + "/tests/generator/good.json";
+  const auto size = static_cast<std::size_t>(std::filesystem::file_size(file));
+  std::vector<ocm::spec::Problem> problems;
+  const auto whole = ocm::spec::read_document(file, "a spec", "spec/topics.json", problems, size);
+  CHECK(problems.empty());
+  REQUIRE(whole.has_value());
+  CHECK(*whole == read("tests/generator/good.json"));
+  CHECK_FALSE(ocm::spec::read_document(file, "a spec", "spec/topics.json", problems, size - 1).has_value());
+  REQUIRE(problems.size() == 1);
+  CHECK(problems[0] == ocm::spec::Problem{file.string(),
+                                          "the file is larger than " + std::to_string(size - 1) + " bytes",
+                                          "a spec is smaller"});
 }
 
 TEST_CASE("a file that is not there, or is no file") {

@@ -300,6 +300,22 @@ TEST_CASE("dbc: floating-point signals") {
   CHECK(signal(half, "S").is_signed);
 }
 
+TEST_CASE("dbc: types of numbers up to 3, which is none that is known, and no further") {
+  const std::string text =
+      "BO_ 1 A: 16 X\n SG_ S : 0|32@1- (1,0) [0|0] \"\" X\n SG_ D : 64|64@1- (1,0) [0|0] \"\" X\n";
+  for (const char* name : {"S", "D"}) {
+    CAPTURE(name);
+    const Message known = message(
+        text + "SIG_VALTYPE_ 1 " + name + " : 3;\n",
+        {"4: " + std::string{name} + " is a floating-point number of " + (*name == 'S' ? "32" : "64") +
+         " bits; read as an integer: 1 is float32, with 32 bits, and 2 float64, with 64"});
+    CHECK(signal(known, name).number == Signal::Number::integer);
+  }
+  CHECK(problems(text + "SIG_VALTYPE_ 1 S : 4;\n") ==
+        std::vector<std::string>{"4: SIG_VALTYPE_: '4', where 0, 1 for float32 or 2 for float64 is expected; "
+                                 "SIG_VALTYPE_ IDENTIFIER SIGNAL : TYPE;"});
+}
+
 TEST_CASE("dbc: one selector: pages, ranges, both") {
   const std::string text =
       "BO_ 1 A: 8 X\n SG_ P0 m0 : 8|8@1+ (1,0) [0|0] \"\" X\n SG_ P1 m1 : 8|8@1+ (1,0) [0|0] \"\" X\n SG_ "
@@ -327,6 +343,17 @@ TEST_CASE("dbc: as many signals in a message as there are indexes, and no more")
   CHECK(dbc::read(text(65'535)).document.has_value());
   CHECK(problems(text(65'536)) ==
         std::vector<std::string>{"1: A has 65536 signals; at most 65535 in a message"});
+}
+
+TEST_CASE("dbc: up to two thousand signals of a message are compared with each other") {
+  const auto text = [](int signals) {
+    std::string of = "BO_ 1 A: 1785 X\n";
+    for (int i = 0; i + 1 < signals; ++i)
+      of += " SG_ S" + std::to_string(i) + " : " + std::to_string(i) + "|1@1+ (1,0) [0|0] \"\" X\n";
+    return of + " SG_ Last : 0|1@1+ (1,0) [0|0] \"\" X\n";
+  };
+  message(text(2000), {"2001: S0 and Last of A have bits in common; each is read by itself"});
+  message(text(2001));
 }
 
 TEST_CASE("dbc: a row of selectors has an end, and ranges may be many") {
@@ -432,6 +459,23 @@ TEST_CASE("dbc: attributes and their defaults") {
   CHECK(a.signals[0].start_value == "637.5");
   CHECK(a.attributes == std::vector<dbc::Attribute>{{"Owner", "me"}});
   CHECK(file.attributes == std::vector<dbc::Attribute>{{"DBName", "car"}});
+}
+
+TEST_CASE("dbc: a number of an enumeration is one of its names, and a number where there are no more") {
+  const auto value = [](const std::string& names, const std::string& number) {
+    const auto file = read("BO_ 1 A: 8 X\nBO_ 2 B: 8 X\nBA_DEF_ BO_ \"GenMsgSendType\" ENUM " + names +
+                           ";\nBA_DEF_DEF_ \"GenMsgSendType\" " + number +
+                           ";\nBA_ \"GenMsgSendType\" BO_ 1 " + number + ";\n");
+    CHECK(file.messages.at(0).send_type == file.messages.at(1).send_type);
+    return file.messages.at(0).send_type;
+  };
+  CHECK(value("\"a\",\"b\"", "0") == "a");
+  CHECK(value("\"a\",\"b\"", "1") == "b");
+  CHECK(value("\"a\",\"b\"", "2") == "2");
+  CHECK(value("\"a\",\"b\"", "\"b\"") == "b");
+  CHECK(value("\"1\",\"0\"", "0") == "0");  // a name, though it is a number
+  CHECK(value("\"1\",\"0\"", "1") == "1");
+  CHECK(value("\"1\",\"b\",\"c\"", "2") == "c");
 }
 
 TEST_CASE("dbc: CAN FD and J1939 by VFrameFormat, whatever the file's list of formats is") {

@@ -1,6 +1,8 @@
 // Several specs become one: what is added, what of two counts, and what is reported where both cannot be.
 #include "generator/spec/merge.hpp"
 
+#include <algorithm>
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -198,6 +200,25 @@ TEST_CASE(
     CHECK(told(both, messages(count, 1, "A")).size() ==
           static_cast<std::size_t>(2 * std::min(count, 3) + (count > 3 ? 1 : 0)));
   }
+  // Topics of one name, too.
+  const auto topics = [](int count, int first_id) {
+    std::string all;
+    for (int i = 0; i < count; ++i)
+      all +=
+          (i == 0 ? "" : ", ") + topic("a" + std::to_string(i), "0x" + std::to_string(first_id + i), "left");
+    return all;
+  };
+  for (const int count : {3, 4, 5}) {
+    CAPTURE(count);
+    Model names = robot("one", "left", topics(count, 10));
+    Lines lines;
+    for (int i = 0; i < 3; ++i)
+      lines.push_back("a second a" + std::to_string(i) + ": one has a topic of that name" + rename);
+    if (count > 3)
+      lines.push_back(std::to_string(count - 3) +
+                      " more conflicts with one; is it the same file, or another version of it?");
+    CHECK(told(names, robot("two", "left", topics(count, 20))) == lines);
+  }
   // A topic has many identifiers: one conflict.
   Model into = robot("one", "left", topic("a", "0x10", "left"));
   CHECK(told(into, robot("two", "left", topic("b", "0x10", "left"))) ==
@@ -227,6 +248,64 @@ TEST_CASE(
   CHECK((into.definitions[3].of == Definition::Of::bus && into.definitions[3].name == "J"));
   CHECK(into.not_kept.size() == 2);
   CHECK(into.too_long == Lines{"L", "M"});
+}
+
+TEST_CASE("merge: what was put on an interface is on it alone, in the catalogue, too") {
+  const auto make = [] {
+    Model model = robot("one", "left", topic("a", "0x10", "left"));
+    model.data_bit_rate = 2'000'000;
+    model.messages = parse("BO_ 1 M: 8 left\n").messages;
+    return model;
+  };
+  const auto buses = [](Model model) {
+    const spec::Spec loaded{std::move(model)};
+    Lines lines;
+    for (const auto& each : loaded.catalogue().topics)
+      lines.push_back(std::string{each.name} + " " + std::string{each.bus});
+    return lines;
+  };
+  CHECK(buses(make()) == Lines{"a ", "M "});
+  Model model = make();
+  model.put_on("can1");
+  CHECK((model.bit_rate == 0 && model.data_bit_rate == 0));
+  REQUIRE(model.buses.size() == 1);
+  CHECK(model.buses[0].name == "can1");
+  CHECK((model.buses[0].bit_rate == 500'000 && model.buses[0].data_bit_rate == 2'000'000));
+  CHECK(buses(std::move(model)) == Lines{"a can1", "M can1"});
+}
+
+TEST_CASE("merge: an interface has its own bit rates, and those of all where it has none") {
+  Model model;
+  model.bit_rate = 250'000;
+  model.data_bit_rate = 1'000'000;
+  model.buses = {{"can0", 500'000, 0}, {"can1", 0, 2'000'000}, {"can2", 125'000, 4'000'000}};
+  const auto rates = [&model](std::string_view interface) {
+    const spec::BusModel bus = model.bus(interface);
+    CHECK(bus.name == interface);
+    return std::pair{bus.bit_rate, bus.data_bit_rate};
+  };
+  CHECK(rates("can0") == std::pair{500'000U, 1'000'000U});
+  CHECK(rates("can1") == std::pair{250'000U, 2'000'000U});
+  CHECK(rates("can2") == std::pair{125'000U, 4'000'000U});
+  CHECK(rates("can3") == std::pair{250'000U, 1'000'000U});
+}
+
+TEST_CASE("merge: the bit rate that all interfaces have is that of the bus") {
+  const auto shared = [](std::uint32_t of_all, std::vector<spec::BusModel> buses) {
+    Model model;
+    model.bit_rate = of_all;
+    model.data_bit_rate = 4 * of_all;
+    model.buses = std::move(buses);
+    model.share_bit_rate();
+    return std::pair{model.bit_rate, model.data_bit_rate};
+  };
+  CHECK(shared(0, {}) == std::pair{0U, 0U});
+  CHECK(shared(0, {{"can0", 500'000, 2'000'000}}) == std::pair{500'000U, 2'000'000U});
+  CHECK(shared(0, {{"can0", 500'000, 2'000'000}, {"can1", 500'000, 2'000'000}}) ==
+        std::pair{500'000U, 2'000'000U});
+  CHECK(shared(0, {{"can0", 500'000, 2'000'000}, {"can1", 250'000, 2'000'000}}) == std::pair{0U, 2'000'000U});
+  CHECK(shared(0, {{"can0", 500'000, 2'000'000}, {"can1", 500'000, 1'000'000}}) == std::pair{500'000U, 0U});
+  CHECK(shared(125'000, {{"can0", 500'000, 2'000'000}}) == std::pair{125'000U, 500'000U});
 }
 
 TEST_CASE("merge: 255 boards in all, and no more") {

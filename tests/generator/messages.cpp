@@ -10,6 +10,8 @@
 #include <random>
 #include <sstream>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include <catch2/catch.hpp>
@@ -124,6 +126,13 @@ TEST_CASE("messages: the length is that of the shortest frame that has all field
   CHECK(length(8).fd);
   CHECK(length(24).length == 32);
   CHECK(length(63).length == 64);
+  const std::pair<unsigned, unsigned> lengths[] = {{9, 12},  {12, 12}, {13, 16}, {16, 16}, {17, 20},
+                                                   {20, 20}, {21, 24}, {24, 24}, {25, 32}, {32, 32},
+                                                   {33, 48}, {48, 48}, {49, 64}, {64, 64}};
+  for (const auto& [used, whole] : lengths) {
+    CAPTURE(used);
+    CHECK(length(used - 1).length == whole);
+  }
 }
 
 TEST_CASE("messages: a start value is raw, and of a float its number") {
@@ -131,6 +140,31 @@ TEST_CASE("messages: a start value is raw, and of a float its number") {
     {"name": "b", "type": "f32", "byte": 1, "start": 1.5})"));
   CHECK(model.messages[0].fields[0].start == 7);
   CHECK(model.messages[0].fields[1].start == 0x3FC0'0000);
+}
+
+TEST_CASE("messages: a value of many zeros is the number that it is") {
+  const Model model = parse(of_fields(R"({"name": "a", "type": "i64", "byte": 0,
+    "values": {"far": 1000000000000000000, "farther": -9000000000000000000, "near": 10}})"));
+  const auto& values = model.messages.at(0).fields.at(0).values;
+  REQUIRE(values.size() == 3);
+  CHECK(values[0].raw == 1'000'000'000'000'000'000);
+  CHECK(values[1].raw == -9'000'000'000'000'000'000);
+  CHECK(values[2].raw == 10);
+}
+
+TEST_CASE(
+    "messages: the data of CAN FD go at a rate of their own, but where an attribute says that they do not") {
+  const auto switches = [](const std::string& attributes) {
+    const auto loaded = spec::parse(
+        of_fields("", R"(, "length": 12, "fd": true, "attributes": {)" + attributes + "}"), "f.json");
+    REQUIRE(loaded.spec);
+    return loaded.spec->catalogue().topics[0].frames[0].bit_rate_switch;
+  };
+  CHECK(switches(R"("Other": "1")"));
+  CHECK(switches(R"("Other": "0")"));
+  CHECK(switches(R"("CANFD_BRS": "1")"));
+  CHECK_FALSE(switches(R"("CANFD_BRS": "0")"));
+  CHECK_FALSE(switches(R"("Other": "1", "CANFD_BRS": "0")"));
 }
 
 TEST_CASE("messages: what other programs load is loaded with a doubt") {
@@ -165,6 +199,45 @@ TEST_CASE("messages: parts that are never there together have no bits in common"
   parse(of_fields(mode + part("a", "[1]") + part("b", "[[2, 9]]")));
   parse(of_fields(mode + part("a", "[3]") + part("b", "[[2, 9]]")),
         {R"(f.json:1: /messages/0/fields/2: "a" and "b" have bits in common; each is read by itself)"});
+}
+
+TEST_CASE("messages: what hundreds of pages have in common is found") {
+  std::string fields = R"({"name": "mode", "type": "u16", "byte": 0})";
+  const auto add = [&fields](const std::string& name, int page) {
+    fields += R"(, {"name": ")" + name + R"(", "type": "u8", "byte": 2, "selector": "mode", "selected": [)" +
+              std::to_string(page) + "]}";
+  };
+  constexpr int pages = 300;
+  for (int i = 0; i < pages; ++i) add("p" + std::to_string(i), i);
+  parse(of_fields(fields));
+  add("a", pages);
+  add("b", pages);
+  parse(of_fields(fields),
+        {R"(f.json:1: /messages/0/fields/302: "a" and "b" have bits in common; each is read by itself)"});
+}
+
+TEST_CASE("messages: doubts are in the order of the file") {
+  parse(
+      of_fields("\n"
+                R"({"name": "a", "type": "u8", "byte": 1},)"
+                "\n"
+                R"({"name": "b", "type": "u4", "byte": 0, "values": {"far": 16}})",
+                R"(, "length": 1)"),
+      {R"(f.json:2: /messages/0/fields/0: "a" ends in byte 1, and the message has 1 bytes; it is there in longer frames only)",
+       "f.json:3: /messages/0/fields/1/values/far: 16 is no value of 4 bits; it is kept, and never comes"});
+}
+
+TEST_CASE("messages: an identifier has sixteen digits at most") {
+  const auto with = [](const std::string& id) {
+    return spec::parse(R"({"robot": "r", "messages": [{"name": "M", "id": ")" + id + R"(", "fields": []}]})",
+                       "f.json");
+  };
+  const auto longest = with("0x0000000000000123");
+  REQUIRE(longest.spec);
+  CHECK(longest.spec->model().messages.at(0).address.number == 0x123);
+  CHECK(printed(with("0x00000000000000123").problems) ==
+        std::vector<std::string>{
+            R"(f.json:1: /messages/0/id: "0x00000000000000123" is not an id; "0x0" to "0x1FFFFFFF")"});
 }
 
 TEST_CASE("messages: a message with tens of thousands of selected fields is read in seconds") {
@@ -386,6 +459,19 @@ TEST_CASE("messages: a DBC file is known by what it begins with, and JSON whatev
   CHECK(parse("\n VERSION \"\"\nBO_ 1 A: 8 X\n", {}, "car").messages.size() == 1);
 }
 
+TEST_CASE("messages: a word of DBC that ends the text begins no DBC file") {
+  const std::string_view text = "BO_ 1 A: 8 X\n";
+  const auto told = [&](std::size_t size) { return spec::parse(text.substr(0, size), "car").problems; };
+  CHECK(told(text.size()).empty());
+  for (const std::size_t size : {std::size_t{2}, std::size_t{3}}) {
+    CAPTURE(size);
+    const auto problems = told(size);
+    REQUIRE(problems.size() == 1);
+    CHECK(problems[0].remedy == "strict JSON: double quotes, commas between members, no comments");
+  }
+  CHECK(told(4).at(0).what.starts_with("BO_: the file ends here"));
+}
+
 TEST_CASE("messages: a file of two or four bytes a character is named as that") {
   using namespace std::string_literals;
   struct Row {
@@ -461,6 +547,20 @@ TEST_CASE("messages: a bit rate of a DBC file is one that a bus can have, or non
             .bit_rate == 0);
 }
 
+TEST_CASE("messages: the data of a DBC file's bus are no slower than the rest") {
+  const auto of_data = [](const std::string& rate) {
+    return parse(
+               "BO_ 1 A: 8 X\nBA_DEF_ \"Baudrate\" INT 0 100000000;\nBA_DEF_ \"BaudrateCANFD\" INT 0 "
+               "100000000;\nBA_ \"Baudrate\" 500000;\nBA_ \"BaudrateCANFD\" " +
+                   rate + ";\n",
+               {}, "f.dbc")
+        .data_bit_rate;
+  };
+  CHECK(of_data("499999") == 0);
+  CHECK(of_data("500000") == 500'000);
+  CHECK(of_data("500001") == 500'001);
+}
+
 TEST_CASE("messages: what a signal of a DBC file can hold is what its bits can") {
   const Model model =
       parse("BO_ 1 A: 8 X\n SG_ S : 0|12@1- (1,0) [0|0] \"\" X\n SG_ U : 12|12@1+ (1,0) [0|0] \"\" X\n", {},
@@ -496,6 +596,10 @@ TEST_CASE("messages: more nodes than a catalogue has place for") {
   CHECK(model.boards.size() == 255);
   CHECK(model.messages[254].board == 254);
   CHECK(model.messages[255].board == protocol::no_board);
+  for (const auto& target : generate::targets()) {
+    CAPTURE(target.name);
+    CHECK_FALSE(target.make(model, {}).empty());
+  }
 }
 
 TEST_CASE("messages: what a DBC file says of its attributes themselves is kept both ways") {

@@ -1,7 +1,9 @@
 // spec/tasks.json and spec/sentences.json against the schemas that an editor has of them, and what the
 // schemas must see.
+#include <algorithm>
 #include <fstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <catch2/catch.hpp>
@@ -280,6 +282,36 @@ TEST_CASE("what no schema can see of sentences is reported with its place and wh
   CHECK(with("/packed/fields/5/bits", 7) == Lines{"/packed/fields/5: 7 bits are too few for 0 to 255; more"});
   CHECK(with("/packed/fields/5/bits", 11) ==
         Lines{"/packed/fields: 111 bits; 112: seven for each byte between tag and CRC"});
+}
+
+TEST_CASE("an unknown member of any part of the sentences is named, with those that there are") {
+  const Spec spec{"sentences"};
+  const std::pair<std::string, const char*> rows[] = {
+      {"", "$schema, robot, description, integer, packet, sentences, packed"},
+      {"/integer", "min, max, source"},
+      {"/packet", "bytes, source"},
+      {confirm, "name, direction, description, letter, word, text, integers, fields, source"},
+      {std::string{set_point} + "/fields/0", "name, unit, range, values, description"},
+      {"/packed", "version, tag, sentence, description, fields, source"},
+      {"/packed/fields/0", "name, bits"}};
+  for (const auto& [where, known] : rows) {
+    CAPTURE(where);
+    CHECK(told(spec.with((where + "/zzz").c_str(), 1)) ==
+          std::vector<std::string>{where + R"(/zzz: unknown member "zzz"; one of )" + known});
+  }
+}
+
+TEST_CASE("the least and the greatest integer of sentences may be one, and not the other way round") {
+  const Spec spec{"sentences"};
+  const auto is_told = [&](int min, int max) {
+    const auto lines = told(spec.with("/integer", {{"min", min}, {"max", max}, {"source", "decided"}}));
+    return std::find(lines.begin(), lines.end(),
+                     "/integer: min is greater than max; the smaller one as min") != lines.end();
+  };
+  CHECK_FALSE(is_told(-32768, 32767));
+  CHECK_FALSE(is_told(6, 7));
+  CHECK_FALSE(is_told(7, 7));
+  CHECK(is_told(8, 7));
 }
 
 TEST_CASE("any bytes are a problem of the sentences, or sentences") {

@@ -160,6 +160,28 @@ class Program(unittest.TestCase):
             done = made(**changes)
             self.assertEqual((done.returncode, done.stdout), (1, ""), changes)
             self.assertIn(said, done.stderr)
+        # What is just within each bound, and what is just beyond it.
+        for changes in ({"name": "a9_"}, {"level": 1000000}, {"cost": "1ns"}, {"deadline": "1ns"}, {"jitter": "0ns"}, {"waits": "0ns"},
+                        {"period": "4611686018s"}):
+            self.assertEqual((made(**changes).returncode, made(**changes).stderr), (0, ""), changes)
+        for changes, said in (({"name": "_a"}, "'_a' is not a valid name"), ({"name": "9a"}, "'9a' is not a valid name"),
+                              ({"name": "a-b"}, "'a-b' is not a valid name"), ({"level": 1000001}, "level is out of range"),
+                              ({"deadline": "0ns"}, "'0ns' is not a valid time"), ({"jitter": "-1ns"}, "'-1ns' is not a valid time"),
+                              ({"waits": "-1ns"}, "'-1ns' is not a valid time"), ({"period": "4611686019s"}, "is not a valid time"),
+                              ({"source": 1}, "source is not a text")):
+            done = made(**changes)
+            self.assertEqual((done.returncode, done.stdout), (1, ""), changes)
+            self.assertIn(said, done.stderr)
+        # All that is said of a set.
+        for tasks, more, said in (([task], {"bus_percent": 0}, []), ([task], {"bus_percent": 100}, []),
+                                  ([task], {"bus_percent": 101}, ["bus_percent is out of range; a whole number from 0 to 100"]),
+                                  ([task], {"blocking": "0ns"}, []), ([task, task], {}, ["'control' is there twice; another name"]),
+                                  ([{"name": "a"}], {}, ["no cost; a time such as 120us", "no period; a time such as 120us", "no level; a whole number"]),
+                                  ([{"name": "a", "period": "1ms", "level": 0, "waits": "0ns"}], {}, ["no cost; a time such as 120us"])):
+            sets.write_text(json.dumps({"sets": [{"name": "board", "source": "s", "tasks": tasks, **more}]}))
+            done = run("--tasks", "tasks.json", "--check", cwd=self.folder)
+            self.assertEqual((done.returncode, done.stdout), (1 if said else 0, ""), done.stderr)
+            self.assertEqual(done.stderr.splitlines(), [f"tasks.json:1: {line}" for line in said])
         for text in ("", "[]", "{}", '{"sets": []}', '{"sets": [{"name": "a", "tasks": []}]}', '{"sets": [1]}'):
             sets.write_text(text)
             done = run("--tasks", sets, "-o", "-")
@@ -274,12 +296,98 @@ class Program(unittest.TestCase):
         for text, shown in (("0_0 9_9 a_z A_Z z_0 é_é", None), ("_a", r"\_a"), ("a_", r"a\_"), ("a _ b", r"a \_ b"), ("-_a", r"\-\_a"), ("a_-", r"a\_-"),
                             ("- a + b = c > d # e", r"\- a \+ b \= c \> d \# e"), ("a-b a+b a=b a>b a#b", None),
                             ("*a* `b` <c> [d] |e| ~f~", r"\*a\* \`b\` \<c> \[d\] \|e\| \~f\~"),
-                            ("{a} (b) !c 1.d", None), ("a\tb\n\nc", "a b c")):
+                            ("{a} (b) !c 1.d", None), ("a\tb\n\nc", "a b c"), ("\x7fa\x7f\x1fb", "a b"), ("a  b", None)):
             self.spec.write_text(json.dumps({"robot": "x", "messages": [{"name": "M", "id": 1, "length": 1, "description": text, "fields": fields}]}))
             done = run(self.spec, "--to", "markdown", "-o", "-")
             self.assertEqual((done.returncode, done.stderr), (0, ""), text)
             row = next(line for line in done.stdout.splitlines() if line.startswith("| [M](#m) |"))
             self.assertEqual(row.split(" |  |  | ")[1], (text if shown is None else shown) + " |", text)
+
+    def test_names_of_values_and_of_messages_in_markdown(self):
+        """In code only what ends it means something; the place that a heading is found at has letters, digits, hyphens and underscores."""
+        for name, shown in (("on", "`on`"), ("a|b", r"`a\|b`"), ("a\x7f b\x1f~", "`a b~`"), ("`|*", r"`` `\|* ``")):
+            field = {"name": "f", "byte": 0, "type": "u8", "values": {name: 1}}
+            self.spec.write_text(json.dumps({"robot": "x", "messages": [{"name": "AZ.az+09_-", "id": 1, "length": 1, "fields": [field]}]}))
+            done = run(self.spec, "--to", "markdown", "-o", "-")
+            self.assertEqual((done.returncode, done.stderr), (0, ""), name)
+            self.assertIn(f"| f | byte 0 | u8 |  |  | 1 {shown}. |\n", done.stdout)
+            self.assertIn("](#azaz09_-) | ", done.stdout)
+
+    def test_start_values_in_markdown(self):
+        """Of the upper half of 64 bits none is told: there is no decimal number for it here."""
+        for kind, more, start, said in (("u8", {}, 0, None), ("u8", {}, 255, "255"), ("i64", {}, -1, "-1"), ("i64", {}, 1, "1"), ("u64", {}, 1, "1"),
+                                        ("u64", {}, 9223372036854775807, "9223372036854775807"), ("u64", {}, 9223372036854775808, None),
+                                        ("u64", {}, 18446744073709551615, None), ("u8", {"scale": 0.5, "unit": "V"}, 7, "3.5 V"),
+                                        ("i8", {"offset": 3}, -3, "0"), ("f32", {"scale": 2}, 1.5, "3"), ("f64", {}, -0.25, "-0.25")):
+            field = {"name": "f", "byte": 0, "type": kind, "start": start, **more}
+            self.spec.write_text(json.dumps({"robot": "x", "messages": [{"name": "M", "id": 1, "fields": [field]}]}))
+            done = run(self.spec, "--to", "markdown", "-o", "-")
+            self.assertEqual((done.returncode, done.stderr), (0, ""), field)
+            if said is None:
+                self.assertNotIn("Starts at", done.stdout, field)
+            else:
+                self.assertIn(f"| Starts at {said}. |\n", done.stdout, field)
+
+    def test_a_number_has_the_narrowest_type_that_holds_it(self):
+        robot = {"robot": "x", "namespace": "x", "bus": {"bit_rate": 500000, "source": "s"}, "boards": [{"name": "b", "mcu": "m", "source": "s"}]}
+        for width, bits in ((1, 8), (8, 8), (9, 16), (16, 16), (17, 32), (32, 32), (33, 64), (63, 64)):
+            fields = [{"name": "f", "byte": 0, "type": f"u{width}"}]
+            narrow = "" if width == bits else f", {width}"
+            for spec, target, words in (
+                    ({"messages": [{"name": "M", "id": 1, "fields": fields}]}, "c", [f"static inline uint{bits}_t x_M_f(const x_M* message) {{"]),
+                    ({"messages": [{"name": "M", "id": 1, "fields": fields}]}, "cpp", [f"constexpr std::uint{bits}_t f() const noexcept"]),
+                    ({"topics": [{"name": "t", "id": 1, "board": "b", "source": "s", "frames": [{"fields": fields}]}]}, "c", [f"  uint{bits}_t f;\n"]),
+                    ({"topics": [{"name": "t", "id": 1, "board": "b", "source": "s", "frames": [{"fields": fields}]}]}, "cpp",
+                     [f"  std::uint{bits}_t f = 0;", f"using FBits = ocm::protocol::Bits<std::uint{bits}_t, 0{narrow}>;"])):
+                self.spec.write_text(json.dumps({**robot, **spec} if "topics" in spec else {"robot": "x", **spec}))
+                done = run(self.spec, "--to", target, "-o", "-")
+                self.assertEqual((done.returncode, done.stderr), (0, ""), (width, target))
+                for each in words:
+                    self.assertIn(each, done.stdout, (width, target))
+
+    def test_messages_of_the_names_of_the_helpers_of_c(self):
+        helpers = ("at_most_u32", "at_most_u64", "held_i32", "held_i64", "nearest", "within", "nearest_u64", "float_of", "bits_of_float",
+                   "double_of", "bits_of_double")
+        messages = [{"name": name, "id": i, "fields": []} for i, name in enumerate((*helpers, "azAZ09", "near"))]
+        self.spec.write_text(json.dumps({"robot": "x", "messages": messages}))
+        done = run(self.spec, "--to", "c", "-o", "-")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        for name in helpers:
+            self.assertIn(f"typedef struct x_{name}_2 {{", done.stdout)
+        for name in ("azAZ09", "near"):
+            self.assertIn(f"typedef struct x_{name} {{", done.stdout)
+        self.assertIn("#define X_AZAZ09_ID 0x00Bu\n", done.stdout)
+
+    def test_a_message_without_a_sender_where_there_are_as_many_boards_as_there_may_be(self):
+        bus = self.folder / "bus.dbc"
+        bus.write_text("".join(f"BO_ {i} M{i}: 8 N{i}\n" for i in range(256)))
+        for target, words in (("cpp", 'sender = "";\n'), ("spec", '"name": "M255", "id": "0x0FF", "length": 8,\n'), ("dbc", "\nBO_ 255 M255: 8 Vector__XXX\n"),
+                              ("c", "#define BUS_M255_ID 0x0FFu\n"), ("markdown", "| [M255](#m255) | `0x0FF` | 8 |  |  |  |\n"),
+                              ("wireshark", '[0x0FF] = { name = "M255", abbreviation = "M255", length = 8, fields = {} }\n'), ("json-schema", '"M255"')):
+            done = run(bus, "--to", target, "-o", "-")
+            self.assertEqual(done.returncode, 0, target)
+            self.assertIn(words, done.stdout, target)
+            if target == "cpp":
+                self.assertEqual(done.stdout.count(words), 1)
+
+    def test_any_text_is_a_string_of_lua(self):
+        for text, shown in (("V", "V"), ("\x01\x1b[2J \x1f", r"\001\027[2J \031"), ("\t~\x7f", r"\009~\127"), ("a\nb", r"a\010b"),
+                            ("say \"a\" \\", r"say \"a\" \\"), ("°\u0080À", "°\u0080À")):
+            field = {"name": "f", "byte": 0, "type": "u8", "unit": text}
+            self.spec.write_text(json.dumps({"robot": "x", "messages": [{"name": "M", "id": 1, "length": 1, "fields": [field]}]}))
+            done = run(self.spec, "--to", "wireshark", "-o", "-")
+            self.assertEqual((done.returncode, done.stderr), (0, ""), text)
+            self.assertIn(f'  {{ name = "f", start = 0, width = 8, unit = "{shown}" }},\n', done.stdout)
+
+    def test_without_a_standard_input(self):
+        """The files that it opens then have the number 0."""
+        def closed(*arguments):
+            return subprocess.run(["sh", "-c", 'exec "$0" "$@" <&-', TOOL, *map(str, arguments)], capture_output=True, text=True, timeout=60)
+        expected = run(self.spec, "-o", "-").stdout
+        for output, text in ((self.header, ""), ("-", expected), ("/dev/null", "")):
+            done = closed(self.spec, "-o", output)
+            self.assertEqual((done.returncode, done.stdout, done.stderr), (0, text, ""), output)
+        self.assertEqual(self.header.read_text(), expected)
 
     def test_help_version_and_schema(self):
         for option in ("--help", "--version", "--schema"):

@@ -1,0 +1,203 @@
+// What generated files make of names, texts and numbers that few specs have, at the edges of each.
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+#include "generator/spec/spec.hpp"
+#include "generator/targets/cpp_messages.hpp"
+#include "generator/targets/dbc_names.hpp"
+#include "generator/targets/message_fields.hpp"
+#include "generator/targets/target.hpp"
+
+namespace generator_targets_test {
+
+using namespace ocm;
+
+/// What a target makes of a spec.
+std::string made(std::string_view target, const std::string& text, const std::string& name = "f.json") {
+  const auto loaded = spec::parse(text, name);
+  for (const auto& problem : loaded.problems) UNSCOPED_INFO(problem.place << ": " << problem.what);
+  REQUIRE(loaded.spec != nullptr);
+  const auto* found = generate::find_target(target);
+  REQUIRE(found != nullptr);
+  return found->make(loaded.spec->model(), {name, {}});
+}
+bool has(const std::string& text, std::string_view part) {
+  return text.find(part) != std::string::npos;
+}
+/// A spec of one topic.
+std::string of_topic(const std::string& fields) {
+  return R"({"robot": "r", "namespace": "r", "bus": {"bit_rate": 500000, "source": "s"},
+    "boards": [{"name": "b", "mcu": "m", "source": "s"}],
+    "topics": [{"name": "t", "id": "0x10", "board": "b", "source": "s", "frames": [{"fields": [)" +
+         fields + "]}]}]}";
+}
+
+TEST_CASE("targets: letters and digits of a name stay, all else becomes an underscore") {
+  CHECK(generate::cpp_name("azAZ09") == "azAZ09");
+  CHECK(generate::cpp_name("0a9") == "n0a9");
+  CHECK(generate::cpp_name("9") == "n9");
+  for (const char c : std::string_view{"/:@[`{ .-+\x7F\xC3"}) {
+    CAPTURE(c);
+    CHECK(generate::cpp_name(std::string{"a"} + c + "b") == "a_b");
+  }
+  CHECK(generate::cpp_name("a.-b") == "a_b");
+  CHECK(generate::cpp_name("a_b_") == "a_b_");
+  CHECK(generate::cpp_name("__a") == "a");
+  CHECK(generate::cpp_name("") == "n");
+  CHECK(generate::cpp_name("!?") == "n");
+  for (const char* word : {"int", "class", "EOF", "HUGE_VAL", "INFINITY", "NAN", "NULL"})
+    CHECK(generate::cpp_name(word) == std::string{word} + "_");
+  CHECK(generate::cpp_name("Null") == "Null");
+}
+
+TEST_CASE("targets: a comment has no control character and no backslash") {
+  CHECK(generate::comment_text("a\x1F b\x7F"
+                               "c\td\\e~ f") == "a  b c d/e~ f");
+  CHECK(generate::comment_text("").empty());
+}
+
+TEST_CASE("targets: a literal of C++ has control characters as three digits") {
+  const std::string text = made("cpp", "BO_ 1 A\x1F\x7F: 8 N\x01\n", "f.dbc");
+  CHECK(has(text, R"( name = "A\037\177";)"));
+  CHECK(has(text, R"( sender = "N\001";)"));
+}
+
+TEST_CASE("targets: flags of all bits that a field has") {
+  const std::string text = made(
+      "cpp", of_topic(R"({"name": "x", "byte": 0, "type": "u63", "flags": {"low": 0, "seven": 7, "eight": 8,
+                             "half": 31, "more": 32, "most": 62}})"));
+  CHECK(has(text, " low_flag = 0x01;"));
+  CHECK(has(text, " seven_flag = 0x80;"));
+  CHECK(has(text, " eight_flag = 0x0100;"));
+  CHECK(has(text, " half_flag = 0x80000000;"));
+  CHECK(has(text, " more_flag = 0x0100000000;"));
+  CHECK(has(text, " most_flag = 0x4000000000000000;"));
+}
+
+TEST_CASE("targets: an attribute of whole numbers in a DBC file, as long as 32 bits hold them") {
+  const auto type = [](const std::string& value) {
+    const std::string text = made("dbc", R"({"robot": "r", "messages": [{"name": "M", "id": 1, "fields": [],
+      "attributes": {"K": ")" + value + R"("}}]})");
+    const std::string head = "BA_DEF_ BO_ \"K\" ";
+    REQUIRE(has(text, head));
+    const auto at = text.find(head) + head.size();
+    return text.substr(at, text.find(' ', at) - at);
+  };
+  CHECK(type("0") == "INT");
+  CHECK(type("2147483647") == "INT");
+  CHECK(type("2147483648") == "FLOAT");
+  CHECK(type("-2147483648") == "INT");
+  CHECK(type("-2147483649") == "FLOAT");
+  CHECK(type("0.5") == "FLOAT");
+  CHECK(type("2.0") == "FLOAT");
+  CHECK(type("1e3") == "FLOAT");
+  CHECK(type("1E3") == "FLOAT");
+  CHECK(type("one") == "STRING");
+}
+
+TEST_CASE("targets: a DBC file of topics is of a classic bus, and one of messages does not say") {
+  const std::string field = R"({"name": "x", "byte": 0, "type": "u8"})";
+  const std::string topics = made("dbc", of_topic(field));
+  CHECK(has(topics, "BA_DEF_ \"BusType\" STRING ;\n"));
+  CHECK(has(topics, "BA_DEF_DEF_ \"BusType\" \"CAN\";\n"));
+  CHECK(has(topics, "BA_ \"BusType\" \"CAN\";\n"));
+  CHECK(has(topics, "BA_DEF_ \"Baudrate\" INT 1000 1000000;\n"));
+  CHECK(has(topics, "BA_ \"Baudrate\" 500000;\n"));
+  CHECK_FALSE(has(topics, "BaudrateCANFD"));
+  const std::string messages =
+      made("dbc", R"({"robot": "r", "messages": [{"name": "M", "id": 1, "fields": [)" + field + "]}]}");
+  CHECK_FALSE(has(messages, "BusType"));
+  CHECK_FALSE(has(messages, "Baudrate"));
+}
+
+TEST_CASE("targets: in a spec the byte order of most fields is said once") {
+  const auto spec_of = [](const std::string& fields) {
+    return made("spec",
+                R"({"robot": "r", "messages": [{"name": "M", "id": 1, "fields": [)" + fields + "]}]}");
+  };
+  const std::string little = R"({"name": "a", "byte": 0, "type": "u8"})";
+  const std::string big = R"({"name": "b", "byte": 1, "type": "u8", "byte_order": "big"})";
+  const std::string another = R"({"name": "c", "byte": 2, "type": "u8", "byte_order": "big"})";
+  CHECK_FALSE(has(spec_of(""), "byte_order"));
+  CHECK_FALSE(has(spec_of(little), "byte_order"));
+  const std::string equal = spec_of(little + "," + big);
+  CHECK_FALSE(has(equal, "\n  \"byte_order\""));
+  CHECK(has(equal, R"({ "name": "a", "byte": 0, "type": "u8" })"));
+  CHECK(has(equal, R"({ "name": "b", "byte": 1, "byte_order": "big", "type": "u8" })"));
+  const std::string more = spec_of(little + "," + big + "," + another);
+  CHECK(has(more, "\n  \"byte_order\": \"big\",\n"));
+  CHECK(has(more, R"({ "name": "a", "byte": 0, "byte_order": "little", "type": "u8" })"));
+  CHECK(has(more, R"({ "name": "b", "byte": 1, "type": "u8" })"));
+}
+
+TEST_CASE("targets: numbers of a selector are one range where there is none between them") {
+  using Ranges = std::vector<protocol::SelectorRange>;
+  const auto of = [](Ranges ranges, std::uint64_t most = 255) {
+    return generate::in_ranges(ranges, most, "v", "1",
+                               [](std::uint64_t number) { return std::to_string(number); });
+  };
+  CHECK(generate::merged({{1, 1}, {3, 3}}, 255) == Ranges{{1, 1}, {3, 3}});
+  CHECK(generate::merged({{1, 1}, {2, 3}}, 255) == Ranges{{1, 3}});
+  CHECK(generate::merged({{6, 9}, {4, 7}, {1, 1}}, 255) == Ranges{{1, 1}, {4, 9}});
+  CHECK(generate::merged({{4, 9}, {5, 6}}, 255) == Ranges{{4, 9}});
+  CHECK(generate::merged({{0, UINT64_MAX}, {5, 6}}, UINT64_MAX) == Ranges{{0, UINT64_MAX}});
+  CHECK(of({}).empty());
+  CHECK(of({{0, 0}}) == "v == 0");
+  CHECK(of({{1, 1}, {3, 3}}) == "v == 1 || v == 3");
+  CHECK(of({{1, 1}, {2, 2}}) == "(v >= 1 && v <= 2)");
+  CHECK(of({{0, 7}}) == "v <= 7");
+  CHECK(of({{0, 254}}) == "v <= 254");
+  CHECK(of({{0, 255}}) == "1");
+  CHECK(of({{0, 300}}) == "1");
+  CHECK(of({{4, 254}}) == "(v >= 4 && v <= 254)");
+  CHECK(of({{4, 255}}) == "v >= 4");
+  CHECK(of({{4, 300}}) == "v >= 4");
+  CHECK(of({{255, 300}}) == "v == 255");
+  CHECK(of({{256, 300}}).empty());
+}
+
+TEST_CASE("targets: a parameter group has a destination below 240, which is no part of it") {
+  const auto group = [](std::uint32_t identifier) {
+    return generate::group_of({protocol::Address::By::pgn, true, identifier});
+  };
+  CHECK(group(0x0CEF2103) == 0xEF00);
+  CHECK(group(0x0CF02103) == 0xF021);
+  CHECK(group(0x18FEF1FE) == 0xFEF1);
+  CHECK(group(0x19FEF1FE) == 0x1FEF1);
+  CHECK(group(0x1BFFFFFF) == 0x3FFFF);
+  CHECK(group(0x00000000) == 0);
+}
+
+TEST_CASE("targets: names of a DBC file have 32 characters, and each is given out once") {
+  const std::string longest(32, 'a'), cut(30, 'a');
+  generate::DbcNames names;
+  CHECK(names.unique("azAZ09_") == "azAZ09_");
+  CHECK(names.unique(longest) == longest);
+  CHECK(names.unique(longest + "b") == cut + "_2");
+  CHECK(names.unique(longest + "c") == cut + "_3");
+  CHECK(names.unique("9a") == "_9a");
+  CHECK(names.unique("0") == "_0");
+  CHECK(names.unique("") == "_");
+  CHECK(names.unique("on", "_high") == "on_high");
+  CHECK(names.unique("on", "_high") == "on_2_high");
+  for (const char c : std::string_view{"/:@[`{ .-"}) {
+    CAPTURE(c);
+    CHECK(generate::DbcNames{}.unique(std::string{"a"} + c + "b") == "a_b");
+  }
+  // A name that is still to come goes to what has it.
+  generate::DbcNames expecting;
+  expecting.expect(longest);
+  expecting.expect("b-d");  // none that it could have
+  CHECK(expecting.unique(longest + "b") == cut + "_2");
+  CHECK(expecting.unique(longest) == longest);
+  CHECK(expecting.unique("b_d") == "b_d");
+  generate::DbcNames other;
+  other.expect(longest + "b");
+  CHECK(other.unique(longest + "c") == longest);
+}
+
+}  // namespace generator_targets_test
