@@ -7,6 +7,7 @@
 #include <set>
 
 #include "generator/spec/json.hpp"
+#include "generator/spec/names.hpp"
 
 namespace ocm::generate {
 namespace {
@@ -41,6 +42,8 @@ class Reader {
     if (!good)
       complain(node, "'" + text + "' is not a valid name",
                "a letter, then letters, digits and _, all lower case");
+    else if (spec::is_reserved(text))
+      complain(node, "'" + text + "' is a word of C++", "another name");
     else if (!taken.insert(text).second)
       complain(node, "'" + text + "' is there twice", "another name");
     return text;
@@ -103,16 +106,6 @@ class Reader {
   std::vector<spec::Problem>& problems_;
 };
 
-std::string type_name(std::string_view name) {
-  std::string text;
-  bool upper = true;
-  for (const char c : name) {
-    if (c != '_') text += upper ? static_cast<char>(std::toupper(static_cast<unsigned char>(c))) : c;
-    upper = c == '_';
-  }
-  return text;
-}
-
 /// With ' between thousands, as the house writes numbers.
 std::string digits(std::int64_t number) {
   std::string text = std::to_string(number);
@@ -128,7 +121,7 @@ std::string task_struct(Reader& reader, const Node& node, const std::string& nam
   const std::string source = reader.string(node, "source");
   std::string text;
   if (!source.empty()) text += "/// [" + source + "]\n";
-  text += "struct " + type_name(name) + " {\n";
+  text += "struct " + spec::pascal_case(name) + " {\n";
   text += "  static constexpr std::string_view name = \"" + name + "\";\n";
   text += std::string{"  static constexpr bool own = "} + (own != nullptr && own->truth ? "true" : "false") +
           ";\n";
@@ -152,12 +145,18 @@ std::string set_namespace(Reader& reader, const Node& node, const std::string& n
   const std::int64_t blocking = reader.time(node, "blocking", 0, 0);
   const std::int64_t percent = reader.number(node, "bus_percent", 100, 100);
   std::set<std::string> taken;
+  std::set<std::string> declared{"Facts", "Task", "TaskList"};
   std::string structs;
   std::string types;
   for (const Node& task : reader.list(node, "tasks")) {
+    const std::size_t others = taken.size();
     const std::string task_name = reader.name(task, taken);
+    const std::string type = spec::pascal_case(task_name);
+    if (taken.size() > others && !declared.insert(type).second)
+      reader.complain(task, "'" + task_name + "' has the type " + type + ", which is there already",
+                      "another name");
     structs += task_struct(reader, task, task_name) + "\n";
-    types += (types.empty() ? "" : ", ") + type_name(task_name);
+    types += (types.empty() ? "" : ", ") + type;
   }
   const std::string held_up = blocking > 0 ? ", .blocking = " + digits(blocking) : "";
   for (std::size_t at; (at = structs.find('@')) != std::string::npos;) structs.replace(at, 1, held_up);

@@ -155,7 +155,7 @@ class Program(unittest.TestCase):
         for changes, said in (({"cost": "0us"}, "'0us' is not a valid time"), ({"cost": 120}, "'120' is not a valid time"),
                               ({"period": "10 ms"}, "'10 ms' is not a valid time"), ({"period": "-1s"}, "'-1s'"),
                               ({"period": "99999999999999s"}, "is not a valid time"), ({"level": -1}, "level is out of range"),
-                              ({"level": 1.5}, "level is out of range"), ({"name": "Control"}, "'Control' is not a valid name"),
+                              ({"level": 1.5}, "level is out of range"), ({"name": "Control"}, "'Control' is not a valid name"), ({"name": "class"}, "'class' is a word of C++; another name"),
                               ({"own": 1}, "own is not true or false"), ({"waits": "120us"}, "waits is not less than the cost"), ({"prio": 1}, "unknown member prio")):
             done = made(**changes)
             self.assertEqual((done.returncode, done.stdout), (1, ""), changes)
@@ -176,6 +176,8 @@ class Program(unittest.TestCase):
         for tasks, more, said in (([task], {"bus_percent": 0}, []), ([task], {"bus_percent": 100}, []),
                                   ([task], {"bus_percent": 101}, ["bus_percent is out of range; a whole number from 0 to 100"]),
                                   ([task], {"blocking": "0ns"}, []), ([task, task], {}, ["'control' is there twice; another name"]),
+                                  ([task, task | {"name": "con_trol"}, task | {"name": "control_"}], {}, ["'control_' has the type Control, which is there already; another name"]),
+                                  ([task | {"name": "task_list"}], {}, ["'task_list' has the type TaskList, which is there already; another name"]),
                                   ([{"name": "a"}], {}, ["no cost; a time such as 120us", "no period; a time such as 120us", "no level; a whole number"]),
                                   ([{"name": "a", "period": "1ms", "level": 0, "waits": "0ns"}], {}, ["no cost; a time such as 120us"])):
             sets.write_text(json.dumps({"sets": [{"name": "board", "source": "s", "tasks": tasks, **more}]}))
