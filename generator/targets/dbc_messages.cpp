@@ -1,6 +1,8 @@
 #include "generator/targets/dbc_messages.hpp"
 
 #include <algorithm>
+#include <charconv>
+#include <cstdint>
 #include <map>
 #include <set>
 #include <utility>
@@ -28,10 +30,12 @@ constexpr std::size_t fd_formats = 14;  ///< StandardCAN_FD, ExtendedCAN_FD
 std::string as_milliseconds(base::Duration duration) {
   return print(base::normalised(duration.count(), -6));
 }
+/// As INT holds it: 32 bits.
 bool is_whole(const std::string& number) {
-  const auto parsed = base::parse_decimal(number);
-  return parsed && parsed->exponent >= 0 && parsed->digits >= INT32_MIN && parsed->digits <= INT32_MAX &&
-         number.find_first_of(".eE") == std::string::npos;
+  std::int32_t value = 0;
+  const char* const end = number.data() + number.size();
+  const auto [last, error] = std::from_chars(number.data(), end, value);
+  return error == std::errc{} && last == end;
 }
 bool is_number(const std::string& text) {
   return base::parse_decimal(text).ok();

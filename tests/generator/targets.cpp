@@ -90,6 +90,8 @@ TEST_CASE("targets: an attribute of whole numbers in a DBC file, as long as 32 b
   CHECK(type("0") == "INT");
   CHECK(type("2147483647") == "INT");
   CHECK(type("2147483648") == "FLOAT");
+  CHECK(type("3000000000") == "FLOAT");
+  CHECK(type("2000000000") == "INT");
   CHECK(type("-2147483648") == "INT");
   CHECK(type("-2147483649") == "FLOAT");
   CHECK(type("0.5") == "FLOAT");
