@@ -423,16 +423,21 @@ class Monitored(WithAdapter, Operating):
         document["monitors"][0]["when"]["any"][-1]["above"] = "2s"
         played = self.adapter()
         operator = self.operate(document=document, bus=f"slcan:{played.path}")
-        requests = lambda: [frame for frame in played.frames if frame.startswith("103#01")]
-        waiting.until(lambda: requests() == ["103#01640000"], "a request of 100 ms")
+
+        def periods():
+            """One after another, in ms. A stream that is late on a busy machine is asked for again."""
+            asked = [int.from_bytes(bytes.fromhex(frame[6:10]), "little") for frame in played.frames if frame.startswith("103#01")]
+            return [each for i, each in enumerate(asked) if i == 0 or each != asked[i - 1]]
+        waiting.until(lambda: periods() == [100], "a request of 100 ms")
         self.samples(played, 10)
-        self.assertEqual(requests(), ["103#01640000"])  # as it is
-        self.samples(played, 10, x=-10_000)
-        self.assertEqual(requests(), ["103#01640000", "103#014B0000"])  # half of the way: 75 ms
-        self.samples(played, 10, x=25_000)
-        self.assertEqual(requests()[2:], ["103#01320000"])
-        self.samples(played, 10)
-        self.assertEqual(requests()[3:], ["103#01640000"])
+        self.assertEqual(periods(), [100])  # as it is
+        for x, period in ((-10_000, 75), (25_000, 50), (0, 100)):  # 75 ms: half of the way
+            before = periods()
+            end = time.monotonic() + 60
+            while periods() == before and time.monotonic() < end:
+                self.samples(played, 2, x=x)
+            self.samples(played, 10, x=x)
+            self.assertEqual(periods(), [*before, period])
         _, err = self.interrupt(operator)
         self.assertIn("3 periods adapted", err)
 

@@ -182,7 +182,7 @@ transport::Failure failure(const std::string& path, SlcanOptions options = {}) {
 
 template <class F>
 void eventually(F&& holds) {
-  const auto end = std::chrono::steady_clock::now() + 10s;
+  const auto end = std::chrono::steady_clock::now() + 60s;
   while (!holds()) {
     REQUIRE(std::chrono::steady_clock::now() < end);
     std::this_thread::sleep_for(1ms);
