@@ -262,8 +262,7 @@ class Parser {
       statements_.document.nodes.push_back({std::string{lexer_.take().text}, {}, {}});
       if (lexer_.peek().is(',')) lexer_.take();
     }
-    if (lexer_.peek().is(';')) lexer_.take();
-    return true;
+    return true;  // a semicolon is passed over where statements begin
   }
 
   bool message() {

@@ -430,6 +430,7 @@ class FieldReader : protected NodeReader {
                       print(top) + "]",
                   "a range within it, a wider type or a larger scale");
     // The raw numbers whose physical value lies in the range, found by bisection: exact, whatever the digits.
+    // Both bounds lie between what the bits hold, so that neither search can go past them.
     const std::int64_t first = first_raw(field, falling ? *high : *low, falling);
     const std::int64_t last = last_raw(field, falling ? *low : *high, falling);
     if (first > last)
@@ -456,8 +457,7 @@ class FieldReader : protected NodeReader {
       else
         high = middle;
     }
-    const int order = base::compare(*raw_to_physical(field, low), bound);
-    return (falling ? order > 0 : order < 0) ? low + 1 : low;
+    return low;
   }
   [[nodiscard]] static std::int64_t last_raw(const FieldModel& field, Decimal bound, bool falling) {
     std::int64_t low = field.raw_min;
@@ -470,8 +470,7 @@ class FieldReader : protected NodeReader {
       else
         low = middle;
     }
-    const int order = base::compare(*raw_to_physical(field, low), bound);
-    return (falling ? order < 0 : order > 0) ? low - 1 : low;
+    return low;
   }
   /// Rounded down; no overflow.
   [[nodiscard]] static std::int64_t midpoint(std::int64_t low, std::int64_t high) {

@@ -149,7 +149,7 @@ class MessageWriter {
     out_.line("unsigned i;");
     out_.line(message_.length == 0 ? "(void)length;"
                                    : "if (length < " + std::to_string(message_.length) + "u) return 0;");
-    if (message_.length < held_bytes(message_) || message_.length == 0)
+    if (message_.length < held_bytes(message_))
       out_.line("for (i = 0; i < " + std::to_string(held_bytes(message_)) + "u; ++i) message->bytes[i] = 0;");
     if (message_.length != 0)
       out_.line("for (i = 0; i < " + std::to_string(message_.length) +
