@@ -4,7 +4,7 @@
 // the worst there is: the last bit of the longest frame of the level, as soon as one is under way, with error
 // flags as long as they can be. And releases, contents and faults at random. What is simulated must never
 // exceed what is predicted, and must come so near that analyses which leave something out are caught.
-// OCM_RANDOM_SETS=100000 plays more sets.
+// OCM_EXPLORE=100 plays 80,000 sets.
 #include <algorithm>
 #include <iostream>
 

@@ -4,8 +4,7 @@
 // For each message of a random set the critical instant is played: all that is more urgent is released at
 // once, each as late as its jitter allows and from then on as early, one bit after the longest frame below
 // it. And phases, jitters and contents at random. What is simulated must never exceed what is predicted;
-// at the critical instant it must be within a bit of it. OCM_RANDOM_SETS=100000 plays more of them, in some
-// 20 s.
+// at the critical instant it must be within a bit of it. OCM_EXPLORE=20 plays 100,000 of them.
 #include <algorithm>
 #include <iostream>
 
