@@ -316,7 +316,7 @@ class Program(unittest.TestCase):
             self.assertIn("](#azaz09_-) | ", done.stdout)
 
     def test_start_values_in_markdown(self):
-        """Of the upper half of 64 bits none is told: there is no decimal number for it here."""
+        """Of the upper half of 64 bits the page has none: there is no decimal number for it here."""
         for kind, more, start, said in (("u8", {}, 0, None), ("u8", {}, 255, "255"), ("i64", {}, -1, "-1"), ("i64", {}, 1, "1"), ("u64", {}, 1, "1"),
                                         ("u64", {}, 9223372036854775807, "9223372036854775807"), ("u64", {}, 9223372036854775808, None),
                                         ("u64", {}, 18446744073709551615, None), ("u8", {"scale": 0.5, "unit": "V"}, 7, "3.5 V"),

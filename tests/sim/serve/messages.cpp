@@ -63,7 +63,7 @@ TEST_CASE(
   sim::MessageNodes nodes{catalogue, {}, wire};
   CHECK(nodes.player().size() == 4);
   CHECK(nodes.next_event() < base::Time{100ms});
-  // 10, 2, 2 and 4 of them are due before a second is over; the wire stands still.
+  // 10, 2, 2 and 4 of them are due before a second is over; the wire takes none.
   nodes.advance(base::Time{1s - 1ns});
   Lines said;
   nodes.summarise(reporting_to(said));

@@ -8,7 +8,6 @@ import socket
 import struct
 import subprocess
 import sys
-import threading
 import time
 
 from harness import AMIROCTL, SOURCE, Case, main, waiting
@@ -304,24 +303,21 @@ class OnTheBus(Case):
         server.bind(path)
         os.chmod(path, 0o600)
         server.listen()
-        server.settimeout(10)
-
-        def serve():
-            node, _ = server.accept()
-            with node:
-                node.recv(32)
-                node.send(struct.pack("<B3xIIII12s", HELLO, MAGIC, VERSION, 500_000, 64, b"sim"))
-                for lost in (3, 4):
-                    node.send(struct.pack("<BBBxIq8s8x", FRAME, 0, 2, 0x7FF, time.time_ns(), b"\xDE\xAD"))
-                    node.send(struct.pack("<B7xQ16x", OVERRUN, lost))
-                node.send(struct.pack("<BB2xI24x", GOODBYE, 1, VERSION))
-
-        player = threading.Thread(target=serve)
-        player.start()
-        self.addCleanup(player.join)
-        out, err = self.run_tool("--bus", "sim", "listen", "--raw", code=1)
+        server.settimeout(60)
+        listener = self.start("--bus", "sim", "listen", "--raw")
+        node, _ = server.accept()
+        self.addCleanup(node.close)
+        node.send(struct.pack("<B3xIIII12s", HELLO, MAGIC, VERSION, 500_000, 64, b"sim"))
+        self.assertEqual(listener.stderr.readline(), "bus: sim\n")
+        self.settle()
+        for lost in (3, 4):
+            node.send(struct.pack("<BBBxIq8s8x", FRAME, 0, 2, 0x7FF, time.time_ns(), b"\xDE\xAD"))
+            node.send(struct.pack("<B7xQ16x", OVERRUN, lost))
+        node.send(struct.pack("<BB2xI24x", GOODBYE, 1, VERSION))
+        out, err = listener.communicate(timeout=60)
+        self.assertEqual(listener.returncode, 1)
         self.assertEqual([line.split()[2] for line in out.splitlines()], ["7FF#DEAD"] * 2)
-        self.assertIn("\n2 frames, 0 samples, 2 of unknown identifier, 7 lost in the receive queue\n", err)
+        self.assertIn("2 frames, 0 samples, 2 of unknown identifier, 7 lost in the receive queue\n", err)
         self.assertIn("\n2 of 2 frames are of no topic of AMiRo: another robot? --spec FILE names the topics of another robot\n", err)
 
     def test_the_robot_moves_and_its_watchdog_stops_it(self):

@@ -404,7 +404,7 @@ class OnSerialLines(Case):
         talk = self.flooded()
         talk.type("*drop 0\n")
         talk.wait_for("closed 0\n")
-        self.assertRegex(talk.end(), r"server .*\b64 packets dropped with their link")
+        self.assertRegex(talk.end(), r"server .*\b64 packets dropped with a link")
 
     def test_what_waits_at_the_end_of_the_input_still_goes_to_a_robot_that_reads_late(self):
         """It has a second for that, which on a busy machine may pass without it: once is enough."""

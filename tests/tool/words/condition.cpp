@@ -157,8 +157,8 @@ TEST_CASE("digits that a decimal has no room for are compared where the wire has
   wide.raw_max = INT64_MAX;
   wide.scale = {1, 0};
   CHECK(Condition::of(wide, Comparison::equal, "18446744073709551615").ok());
-  wide.offset = {5, 0};
-  CHECK(Condition::of(wide, Comparison::equal, "18446744073709551620").error.starts_with("x takes"));
+  wide.offset = {6, 0};
+  CHECK(Condition::of(wide, Comparison::equal, "18446744073709551621").error.starts_with("x takes"));
   wide.offset = {};
   wide.scale = {1, -1};
   CHECK(Condition::of(wide, Comparison::equal, "1844674407370955161.5").error.starts_with("x takes"));
