@@ -97,8 +97,20 @@ struct Decoding {
       if (count < entries.size()) display.flush();  // a pipe from a live bus: now, not with the next frames
     }
     display.flush();
+    tell_lost(log);
     unreadable |= log.complain();
     ended_early |= log.ended_early();
+  }
+
+  /// What the log itself says that it lacks.
+  static void tell_lost(logs::OpenedLog& log) {
+    const auto& recorded = log.reader().recorded();
+    for (std::size_t i = 0; i < recorded.size(); ++i)
+      if (recorded[i].dropped != 0)
+        remark(fmt::format("{}: {} of {} lost while it was recorded",
+                           log.path() == "-" ? "standard input" : log.path(),
+                           counted(recorded[i].dropped, "frame"),
+                           log.reader().interfaces().name(static_cast<std::uint16_t>(i))));
   }
 };
 
