@@ -35,7 +35,8 @@ function(_ocm_find_generator)
       if(NOT OCM_HOST_CXX)
         set(OCM_HOST_CXX c++)
       endif()
-      # Not optimised: it runs for a tenth of a second once a changed spec, and its compiler for half a minute.
+      # Not optimised where one configuration is built: it runs for a tenth of a second once a changed spec, and the
+      # optimiser takes a third of its compiler's time.
       # Nothing of the cross build may reach the host's: neither its toolchain file nor CC, CXX and flags.
       set(clean_env ${CMAKE_COMMAND} -E env --unset=CC --unset=CXX --unset=CFLAGS --unset=CXXFLAGS --unset=LDFLAGS
                     --unset=CMAKE_TOOLCHAIN_FILE --unset=CMAKE_GENERATOR)

@@ -110,14 +110,13 @@ Guarded::Own Timeline::commanded_by_operator() {
   return guarded == nullptr ? Guarded::Own{} : guarded->commands_itself(other_.last());
 }
 
-void Timeline::send(const can::Frame& frame) {
+void Timeline::send(const can::Frame& frame, bool held) {
   const bool set_point = other_.is_set_point(frame);
-  const bool behaviour = other_.is_behaviour(frame);
   other_.send(frame);
   if (set_point) outgoing_.otherwise_after_the_next(still_moving);
-  if (behaviour) outgoing_.otherwise_after_the_next(still_travelling);
+  if (other_.is_behaviour(frame)) outgoing_.otherwise_after_the_next(still_travelling);
   hand_over(frame);
-  behind_ = set_point || behaviour ? 0 : behind_ + 1;
+  behind_ = set_point || held ? 0 : behind_ + 1;
   refusals_.sent(frame, set_point && moving_);
   if (set_point) moving_ = !is_rest(frame);
 }
@@ -141,7 +140,7 @@ void Timeline::carry_out_once(const client::Command& command) {
   if (command.hold) outgoing_.otherwise_after_the_next(still_moving);  // a behaviour, too
   if (command.ends_hold) outgoing_.otherwise(still_moving);
   presence_.sent(command);
-  for (const auto& frame : command.frames) send(frame);
+  for (const auto& frame : command.frames) send(frame, command.hold && frame == command.hold->frame);
   for (const auto& frame : command.fd_frames) send_fd(frame);
 }
 

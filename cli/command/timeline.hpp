@@ -123,7 +123,8 @@ class Timeline {
   [[nodiscard]] bool take(const can::Received& received);
   /// What has come and was not looked at.
   void take_what_waits();
-  void send(const can::Frame& frame);
+  /// `held`: it is the set point of a hold.
+  void send(const can::Frame& frame, bool held = false);
   /// What is no set point: a robot has no CAN FD.
   void send_fd(const can::AnyFrame& frame);
   /// To the bus, and counts the time that this took.
@@ -182,8 +183,8 @@ class Timeline {
   RefusalWatch refusals_;
   PresenceWatch presence_;
   bool refused_ = false;
-  /// Frames that were sent since the last set point: a queue keeps the order, so that it has left once no
-  /// more than they wait.
+  /// Frames that were sent since the last set point of motors or of what is held: a queue keeps the order, so
+  /// that it has left once no more than they wait.
   std::uint64_t behind_ = 0;
   std::uint64_t withheld_ = 0;   ///< set points that were due while none could leave
   std::uint64_t left_out_ = 0;   ///< turns of what is repeated: this program was late,

@@ -541,7 +541,8 @@ bool JsonLineParser::put_request(log::Entry& entry, const protocol::Topic& topic
     if (value) return refuse_twice("field", named.name);
     if (!named.value)
       return refuse(log::Cause::syntax, fmt::format("field {} has no value", shown(named.name)),
-                    "write a number or a string");
+                    named.name == "mode" ? "one of: stop, publish, once"
+                                         : R"(write seconds, or a time such as "500ms")");
     value = named.value;
   }
   constexpr std::string_view modes[] = {"stop", "publish", "once"};

@@ -163,11 +163,11 @@ void FleetWatch::step() {
     say(Level::warning, "the page that sent a robot does not answer: what it sent is stopped");
   }
   if (!owner_draws_) draw();
-  if ((scans_ || connects_) && line_->end().idle()) {
-    for (const std::string& words : line_->end().take_failed()) say(Level::warning, words);
-    connects_ = std::exchange(scans_, false);
+  for (const std::string& words : line_->end().take_failed()) say(Level::warning, words);
+  if (scans_ && line_->end().idle()) {
+    scans_ = false;
     for (const auto& peer : line_->end().peers())
-      if (connects_ && !line_->robot(peer.index).linked) line_->end().connect(peer.index);
+      if (!line_->robot(peer.index).linked) line_->end().connect(peer.index);
   }
   if (now >= next_state_) {
     next_state_ = now + state_interval;

@@ -78,7 +78,6 @@ class FleetWatch {
   std::string source_;
   std::string gone_;  ///< why there is no line now
   bool scans_ = false;
-  bool connects_ = false;  ///< to robots that a look found
   bool owner_draws_ = false;
   std::size_t robots_ = 0;  ///< on the list
   std::string map_;         ///< that was published last

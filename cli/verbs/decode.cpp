@@ -97,7 +97,7 @@ struct Decoding {
       if (count < entries.size()) display.flush();  // a pipe from a live bus: now, not with the next frames
     }
     display.flush();
-    tell_lost(log);
+    if (!over()) tell_lost(log);  // it stands at the end, or anywhere
     unreadable |= log.complain();
     ended_early |= log.ended_early();
   }
@@ -105,12 +105,14 @@ struct Decoding {
   /// What the log itself says that it lacks.
   static void tell_lost(logs::OpenedLog& log) {
     const auto& recorded = log.reader().recorded();
-    for (std::size_t i = 0; i < recorded.size(); ++i)
-      if (recorded[i].dropped != 0)
-        remark(fmt::format("{}: {} of {} lost while it was recorded",
-                           log.path() == "-" ? "standard input" : log.path(),
-                           counted(recorded[i].dropped, "frame"),
-                           log.reader().interfaces().name(static_cast<std::uint16_t>(i))));
+    for (std::size_t i = 0; i < recorded.size(); ++i) {
+      if (recorded[i].dropped == 0) continue;
+      const std::string_view name = log.reader().interfaces().name(static_cast<std::uint16_t>(i));
+      remark(fmt::format("{}: {} of {} lost while it was recorded",
+                         log.path() == "-" ? "the standard input" : log::Complaints::printable(log.path()),
+                         counted(recorded[i].dropped, "frame"),
+                         name.empty() ? "a bus without a name" : log::Complaints::printable(name)));
+    }
   }
 };
 

@@ -42,8 +42,6 @@ class Reader {
     if (!good)
       complain(node, "'" + text + "' is not a valid name",
                "a letter, then letters, digits and _, all lower case");
-    else if (spec::is_reserved(text))
-      complain(node, "'" + text + "' is a word of C++", "another name");
     else if (!taken.insert(text).second)
       complain(node, "'" + text + "' is there twice", "another name");
     return text;
@@ -188,6 +186,8 @@ std::string tasks_header(std::string_view json, std::string_view file_name,
   std::string calls;
   for (const Node& set : reader.list(root, "sets")) {
     const std::string name = reader.name(set, taken);
+    if (spec::is_reserved(name) || name == "std" || name == "for_each_set")  // it is a namespace
+      reader.complain(set, "'" + name + "' is a word of the header", "another name");
     text += set_namespace(reader, set, name);
     calls += "  f(std::string_view{\"" + name + "\"}, " + name + "::Facts::Tasks{});\n";
   }

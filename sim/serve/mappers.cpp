@@ -65,8 +65,11 @@ ChosenWorld read_world(const MapperOptions& options) {
 /// Parts of a sentence that say what was lost: only those that are not 0.
 class Losses {
  public:
+  /// A noun has a star behind it where its plural has an s.
   Losses& add(std::uint64_t count, std::string_view what) {
-    if (count != 0) text_ += fmt::format(", {} {}", count, what);
+    if (count == 0) return *this;
+    const bool noun = what.find('*') != std::string_view::npos;
+    text_ += ", " + (noun ? ocm::client::counted(count, what) : fmt::format("{} {}", count, what));
     return *this;
   }
   [[nodiscard]] const std::string& text() const { return text_; }
@@ -79,12 +82,12 @@ template <class Robot>
 void report_robot(Robot& robot, const std::string& link, const Shell& shell) {
   const ocm::mapper::app::Counters counters = robot.application().counters();
   Losses lost;
-  lost.add(counters.unsent, "sentences for a link that was gone")
-      .add(counters.output_full, "bytes that its line had no room for")
-      .add(counters.input_full + counters.input_dropped + counters.input_unlinked, "bytes to it lost")
-      .add(counters.damaged.total(), "damaged sentences")
-      .add(counters.refused, "sentences refused")
-      .add(counters.orders_lost, "orders replaced");
+  lost.add(counters.unsent, "sentence* for a link that was gone")
+      .add(counters.output_full, "byte* that its line had no room for")
+      .add(counters.input_full + counters.input_dropped + counters.input_unlinked, "byte* to it lost")
+      .add(counters.damaged.total(), "damaged sentence*")
+      .add(counters.refused, "sentence* refused")
+      .add(counters.orders_lost, "order* replaced");
   shell.report(fmt::format(
       "{:<10} links {}, handshakes {}, updates {}, idles {}, set points {}, arrived {}, stops {}{}",
       robot.body().name(), counters.links, counters.handshakes, counters.updates, counters.idles,
@@ -144,7 +147,7 @@ std::string way_text(const simulation::WayCounters& way) {
                      Losses{}
                          .add(way.lost, "lost in the air")
                          .add(way.repeated, "repeated")
-                         .add(way.dropped, "dropped with their link")
+                         .add(way.dropped, "dropped with a link")
                          .text());
 }
 void summarise(plant::Fleet& fleet, const CentralLine& line, const Shell& shell) {
@@ -157,21 +160,21 @@ void summarise(plant::Fleet& fleet, const CentralLine& line, const Shell& shell)
                     Losses{}
                         .add(dongle.outbox().refused, "that its dongle had no room for")
                         .add(dongle.outbox().dropped, "that waited for a link that died")
-                        .add(dongle.counters().dropped, "bytes that went with a link")
-                        .add(dongle.counters().refused, "bytes too many for its UART")
-                        .add(radio.robot_timeouts, "time-outs of the link")
-                        .add(radio.refused + radio.failed, "attempts to connect that failed")
+                        .add(dongle.counters().dropped, "byte* that went with a link")
+                        .add(dongle.counters().refused, "byte* too many for its UART")
+                        .add(radio.robot_timeouts, "time-out* of the link")
+                        .add(radio.refused + radio.failed, "attempt* to connect that failed")
                         .text()),
         shell);
   }
   const ocm::mapper::link::CentralCounters& central = fleet.central().counters();
   const std::string lost = Losses{}
-                               .add(central.refused_commands, "commands refused")
-                               .add(central.unsent_bytes, "bytes for links that were gone or full")
-                               .add(central.dropped_packets, "packets dropped with their link")
-                               .add(central.unlisted, "robots beyond the list")
-                               .add(line.unheard(), "bytes sent with no server connected")
-                               .add(line.unread_lost(), "bytes that the program did not read")
+                               .add(central.refused_commands, "command* refused")
+                               .add(central.unsent_bytes, "byte* for links that were gone or full")
+                               .add(central.dropped_packets, "packet* dropped with a link")
+                               .add(central.unlisted, "robot* beyond the list")
+                               .add(line.unheard(), "byte* sent with no server connected")
+                               .add(line.unread_lost(), "byte* that the program did not read")
                                .text();
   shell.report(fmt::format("{:<10} {}", "central", lost.empty() ? "nothing was lost" : lost.substr(2)));
 }

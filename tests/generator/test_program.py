@@ -155,7 +155,7 @@ class Program(unittest.TestCase):
         for changes, said in (({"cost": "0us"}, "'0us' is not a valid time"), ({"cost": 120}, "'120' is not a valid time"),
                               ({"period": "10 ms"}, "'10 ms' is not a valid time"), ({"period": "-1s"}, "'-1s'"),
                               ({"period": "99999999999999s"}, "is not a valid time"), ({"level": -1}, "level is out of range"),
-                              ({"level": 1.5}, "level is out of range"), ({"name": "Control"}, "'Control' is not a valid name"), ({"name": "class"}, "'class' is a word of C++; another name"),
+                              ({"level": 1.5}, "level is out of range"), ({"name": "Control"}, "'Control' is not a valid name"),
                               ({"own": 1}, "own is not true or false"), ({"waits": "120us"}, "waits is not less than the cost"), ({"prio": 1}, "unknown member prio")):
             done = made(**changes)
             self.assertEqual((done.returncode, done.stdout), (1, ""), changes)
@@ -184,6 +184,10 @@ class Program(unittest.TestCase):
             done = run("--tasks", "tasks.json", "--check", cwd=self.folder)
             self.assertEqual((done.returncode, done.stdout), (1 if said else 0, ""), done.stderr)
             self.assertEqual(done.stderr.splitlines(), [f"tasks.json:1: {line}" for line in said])
+        for name, said in (("class", True), ("std", True), ("for_each_set", True), ("classes", False)):
+            sets.write_text(json.dumps({"sets": [{"name": name, "source": "s", "tasks": [task | {"name": "class"}]}]}))
+            done = run("--tasks", "tasks.json", "--check", cwd=self.folder)
+            self.assertEqual((done.returncode, done.stderr), (1, f"tasks.json:1: '{name}' is a word of the header; another name\n") if said else (0, ""))
         for text in ("", "[]", "{}", '{"sets": []}', '{"sets": [{"name": "a", "tasks": []}]}', '{"sets": [1]}'):
             sets.write_text(text)
             done = run("--tasks", sets, "-o", "-")

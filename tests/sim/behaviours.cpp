@@ -128,7 +128,7 @@ sim::WorldOptions open_floor(std::uint64_t seed) {
 }
 
 TEST_CASE("travel ends within a millimetre and a half and a degree") {
-  const int worlds = test::at_full_speed ? 1000 : test::explored(20);
+  const int worlds = test::at_full_speed ? 1000 : test::explored(20, 5);
   double worst_m = 0;
   double worst_rad = 0;
   for (int i = 0; i < worlds; ++i) {
@@ -268,7 +268,7 @@ sim::Line random_line(Random& random, double least_radius_m) {
 
 TEST_CASE("follow stays on a line whose curves its speed allows, and stops where it ends") {
   constexpr double ahead_m = firmware::boards::di_wheel_drive::line_model.ahead_m;
-  const int worlds = test::at_full_speed ? 1000 : test::explored(20);
+  const int worlds = test::at_full_speed ? 1000 : test::explored(20, 5);
   double worst_m = 0;
   double lines_m = 0;
   for (int i = 0; i < worlds; ++i) {
@@ -345,7 +345,7 @@ amiro::Avoid avoid(double speed_m_per_s) {
 }
 
 TEST_CASE("avoid never touches a wall, and gets about") {
-  const int worlds = test::at_full_speed ? 1000 : test::explored(20);
+  const int worlds = test::at_full_speed ? 1000 : test::explored(20, 5);
   int far = 0;
   for (int i = 0; i < worlds; ++i) {
     Random random{static_cast<std::uint64_t>(i)};
@@ -378,7 +378,7 @@ amiro::Home home(double speed_m_per_s, double distance_m) {
 }
 
 TEST_CASE("home never touches a wall, and rests at its distance from the nearest one") {
-  const int worlds = test::at_full_speed ? 1000 : test::explored(20);
+  const int worlds = test::at_full_speed ? 1000 : test::explored(20, 5);
   int resting = 0;
   int near = 0;
   double worst_m = 0;

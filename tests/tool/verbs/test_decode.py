@@ -325,8 +325,8 @@ class Decode(Case):
         log = (" can0  605   [4]  00 D2 00 00\n" + drops.format(3, "can0", 3) + " can1  605   [4]  00 D2 00 00\n" + drops.format(1, "can1", 1) +
                drops.format(2, "can0", 5))
         _, err = self.run_tool("decode", stdin=log)
-        self.assertTrue(err.startswith("standard input: 5 frames of can0 lost while it was recorded\n"
-                                       "standard input: 1 frame of can1 lost while it was recorded\n2 frames, 0 samples\n"), err)
+        self.assertTrue(err.startswith("the standard input: 5 frames of can0 lost while it was recorded\n"
+                                       "the standard input: 1 frame of can1 lost while it was recorded\n2 frames, 0 samples\n"), err)
 
     def test_contradictions_of_a_spec_that_has_topics_and_messages_speak_of_both(self):
         with open(os.path.join(SOURCE, "tests", "generator", "probe.json"), encoding="utf-8") as file:

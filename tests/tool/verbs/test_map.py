@@ -215,7 +215,7 @@ class Map(Case):
 
     def test_a_robot_is_given_time_to_say_its_size(self):
         self.run_tool("robots", "--scan", "200ms", "--listen", "200ms")
-        self.avr.who_late = 1.5
+        self.avr.who_late = 0.7
         _, err = self.map(self.path("a.pgm"), duration="1s")
         self.assertNotIn("the usual one is taken", err)
 

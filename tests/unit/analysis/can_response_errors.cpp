@@ -128,7 +128,7 @@ TEST_CASE("CAN: simulated with faults never exceeds predicted with E(t); mutants
                                  {"repetition of its own frame only"},
                                  {"error frames of 17 bits"},
                                  {"error frames of 19 bits"}}};
-  const int rounds = test::explored(800);
+  const int rounds = test::explored(800, 200);
   for (int round = 0; round < rounds; ++round) {
     const RandomSet set = test::random_set(random);
     const ErrorModel model = random_model(set, random);

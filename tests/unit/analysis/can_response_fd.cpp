@@ -174,7 +174,7 @@ TEST_CASE("CAN FD: played never exceeds predicted, comes close, and finds costs 
   int messages = 0;
   int close = 0;
   std::array<int, 5> caught{};
-  const int rounds = std::max(test::explored(600), 150);  // of fewer the shares below say little
+  const int rounds = test::explored(600, 150);
   for (int round = 0; round < rounds; ++round) {
     const FdSet set = random_fd_set(random);
     const auto results = analysis.analyse(set.messages, {.bit = set.bit});

@@ -582,7 +582,7 @@ TEST_CASE("explorer: a lost robot does nothing, and is in the way") {
 TEST_CASE("explorer: whatever the map: it ends, and no piece leads through something") {
   Random random{5};
   int pieces = 0;
-  const int runs = ocm::test::explored(10);
+  const int runs = ocm::test::explored(10, 2);
   for (int run = 0; run < runs; ++run) {
     CAPTURE(run);
     std::vector<std::string> rows(20, std::string(25, '.'));
