@@ -126,6 +126,15 @@ class Behave(Case):
         out, _ = self.run_tool("listen", "behaviour", "--json", "--timeout", "500ms")
         self.assertEqual(out, "")
 
+    def test_it_asks_for_ten_reports_a_second(self):
+        self.start_sim()
+        listener = self.listen("behaviour", "--commands", "--timeout", "20s")
+        self.run_tool("behave", "follow", "--for", "300ms")
+        self.settle()
+        out, _ = self.interrupt(listener)
+        asked = [line["fields"] for line in self.objects(out) if line["frame"] == "request"]
+        self.assertEqual({fields["period"] for fields in asked if fields["mode"] == "publish"}, {0.1})
+
     def test_a_set_point_ends_follow(self):
         self.start_sim()
         behave = self.behaving("follow")
@@ -140,6 +149,7 @@ class Behave(Case):
             _, err = self.run_tool("behave", "follow", *arguments, code=1)
             self.assertTrue(err.endswith("amiroctl: behave: no behaviour came, so nothing shows that di_wheel_drive has done it\n"
                                          "          is board di_wheel_drive powered and on sim? See `amiroctl doctor`\n"), err)
+            self.assertEqual(err.count("no behaviour came"), 1, err)  # while it waits that is said after two seconds
 
     def test_a_script_that_is_interrupted_ends_what_it_repeats(self):
         self.start_sim()

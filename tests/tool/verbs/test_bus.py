@@ -153,6 +153,7 @@ class OnTheBus(Case):
             with self.subTest(words=words):
                 _, err = self.run_tool("listen", *words, "--timeout", "2100ms")
                 self.assertEqual(hint in err, told, err)
+                self.assertEqual("silent until it is asked" in err, told, err)  # nor of another sensor, that comes every 100 ms
 
     def test_ctrl_c_ends_listen_cleanly(self):
         self.start_sim()

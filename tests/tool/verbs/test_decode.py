@@ -272,6 +272,18 @@ class Decode(Case):
             self.assertEqual("timed out" in err, lost in log, err)
             self.assertEqual("1 frame of another form" in err, malformed in log, err)
 
+    def test_a_short_message_that_came_by_the_transport_protocol_has_all_its_fields(self):
+        """Eight bytes of fields, and a ninth that means nothing."""
+        truck = ("--spec", os.path.join(SOURCE, "examples", "truck.dbc"), "decode", "--json", "--strict")
+        log = ("(1.0) can0 0CF00400#F17D8DE02E0503FF\n"
+               "(2.0) can0 1CECFF00#20090002FF04F000\n(2.1) can0 1CEBFF00#01F17D8DE02E0503\n(2.2) can0 1CEBFF00#02FF55FFFFFFFFFF\n")
+        frame, _, _, last = self.objects(self.run_tool(*truck, stdin=log)[0])
+        message = last["message"]
+        self.assertEqual(message["fields"], {"TorqueMode": 1, "DemandedTorque": 0, "ActualTorque": 16, "EngineSpeed": 1500,
+                                             "ControllingDevice": 5, "StarterMode": 3})
+        self.assertEqual((message["topic"], message["fields"], message["units"], message["data"]),
+                         ("EEC1", frame["fields"], frame["units"], "F17D8DE02E0503FF55"))
+
     def test_strict_counts_each_fault(self):
         """Frames of an unknown identifier and those whose selector chooses no field, as many of each as of the other and not."""
         car = ("--spec", os.path.join(SOURCE, "examples", "small_car.dbc"), "decode", "--json", "--strict")
@@ -495,6 +507,17 @@ class Decode(Case):
             process.stdin.write(line + "\n")
             process.stdin.flush()
             self.assertIn("data", json.loads(process.stdout.readline()))
+        self.interrupt(process)
+        self.assertEqual(process.returncode, 130)
+
+    def test_what_comes_through_a_live_pipe_is_converted_at_once(self):
+        process = waiting.Program([AMIROCTL, "convert", "-", "-", "--to", "candump"], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+                                  stderr=subprocess.PIPE, text=True, bufsize=1)
+        self._started.append(process)
+        for line in LOG.splitlines()[:3]:
+            process.stdin.write(line + "\n")
+            process.stdin.flush()
+            self.assertEqual(process.stdout.readline(), line + "\n")
         self.interrupt(process)
         self.assertEqual(process.returncode, 130)
 

@@ -255,6 +255,19 @@ class Interrupted(Drive):
         self.assertEqual((line["id"], line["data"]), ("20B", "0000000000000000"))
 
 
+    def test_an_interrupted_script_says_how_the_sensors_that_it_asked_end(self):
+        self.start_sim()
+        for steps, said in (("0s publish gyro 100ms\n0s drive 5cm/s\n9s led 1 red\n",
+                             "interrupted: the motors were set to zero; `amiroctl stop` stops the sensors too\n"),
+                            ("0s drive 5cm/s\n9s publish gyro 100ms\n", "interrupted: the motors were set to zero\n")):
+            listener = self.listen("motors", "--timeout", "20s")
+            run = self.start("run", self.script(steps))
+            self.assertIn("50C3000000000000", listener.stdout.readline())
+            _, err = self.interrupt(run)
+            self.assertEqual(run.returncode, 130, err)
+            self.assertTrue(err.endswith(said), err)
+            self.interrupt(listener)
+
     def test_also_by_an_error(self):
         self.start_sim()
         listener = self.listen("--commands", "--timeout", "20s")

@@ -262,6 +262,21 @@ class Replaying(Case):
         self.assertIn("1 requests for what was not recorded", err)
         self.interrupt(sim)
 
+    def test_samples_that_are_due_often_come_as_often(self):
+        sim = self.start_sim("--without", "di_wheel_drive,light_ring,power_management")
+        robot = self.start("replay", self.write_log((0, "608#000000000000"), (1, "608#010000000000")), "--on-command")
+        for line in robot.stderr:
+            if "waiting for requests" in line:
+                break
+        listener = self.recording("out.log")
+        self.run_tool("publish", "gyro", "20ms", "--priority", "high")
+        self.recorded("out.log", 40)
+        self.interrupt(listener)
+        self.interrupt(robot)
+        times = [time for time, frame in self.lines("out.log") if frame.startswith("508#")]
+        self.assertLess(statistics.median(later - earlier for earlier, later in zip(times, times[1:])), 0.05)
+        self.interrupt(sim)
+
     def test_a_simulator_that_goes(self):
         sim = self.start_sim()
         log = self.write_log(*[(i / 10, "608#00") for i in range(100)])

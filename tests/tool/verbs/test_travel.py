@@ -68,6 +68,15 @@ class Travel(Case):
         out, _ = self.run_tool("listen", "behaviour", "--json", "--count", "3", "--timeout", "20s")
         self.assertEqual([json.loads(line)["fields"]["ended"] for line in out.splitlines()], [ARRIVED] * 3)
 
+    def test_it_asks_for_twenty_reports_a_second(self):
+        self.start_sim()
+        listener = self.listen("behaviour", "--commands", "--timeout", "20s")
+        self.run_tool("travel", "1cm")
+        self.settle()
+        out, _ = self.interrupt(listener)
+        asked = [line["fields"] for line in self.objects(out) if line["frame"] == "request"]
+        self.assertEqual({fields["period"] for fields in asked if fields["mode"] == "publish"}, {0.05})
+
     def travels(self):
         """Returns when the board has driven some of the metre."""
         waiting.until(lambda: 0 < self.sample("behaviour")["behaviour.distance"] < 0.99, "the board travels")
@@ -108,6 +117,29 @@ class Travel(Case):
         self.assertEqual(travel.returncode, 1, err)
         self.assertIn("di_wheel_drive has not begun it", err)
         self.assertIn('"data":"0000000000000000"', next(line for line in listener.stdout if '"topic":"travel"' in line))
+
+    def test_what_to_do_where_the_board_ended_it(self):
+        self.start_sim("--without", "di_wheel_drive")
+        others = self.start("send", "--stdin", stdin=subprocess.PIPE)
+        for number, ended, remedy in ((4, "no_sample", "`amiroctl doctor` shows which part does not answer"),
+                                      (6, "too_long", "is a wheel blocked? `amiroctl listen odom` shows whether they turn"),
+                                      (7, "late", "streams take the board's time: `amiroctl stop`, then ask for slower ones")):
+            listener = self.listen("travel", "behaviour", "--commands", "--timeout", "20s")
+            travel = self.start("travel", "1m", "--no-confirm")
+            for line in listener.stdout:  # each question is answered
+                if '"topic":"travel"' in line:
+                    break
+                if '"mode"' in line:
+                    others.stdin.write("60D#0000000000000000\n")
+                    others.stdin.flush()
+            else:
+                self.fail("it did not begin")
+            others.stdin.write(f"60D#010050C300000000\n60D#{number:04X}50C300000000\n")  # active, then no longer, with 0.5 m left
+            others.stdin.flush()
+            _, err = travel.communicate(timeout=20)
+            self.assertEqual(travel.returncode, 1, err)
+            self.assertTrue(err.endswith(f"amiroctl: travel: ended by di_wheel_drive: {ended}; 0.5 m, 0 rad are left\n          {remedy}\n"), err)
+            self.interrupt(listener)
 
     def test_one_that_was_stopped_before_it_began_does_not_begin(self):
         """It asks for samples, and is stopped meanwhile; the answer that waits for it is of long ago."""
