@@ -1,6 +1,8 @@
 // What a verb says of frames that do not leave, and how long it waits for them.
 #include "cli/shared/outgoing.hpp"
 
+#include <utility>
+
 #include <fmt/format.h>
 
 #include "ocm/can/text.hpp"
@@ -213,6 +215,50 @@ TEST_CASE("outgoing: of what two frames mean that which no watchdog ends is said
   outgoing.otherwise_after_the_next("it moves");
   world.pass(1s);
   CHECK(meant() == fmt::format("amiroctl: can0 is gone; {}\n          plug it in\n", cli::still_travelling));
+}
+
+TEST_CASE("outgoing: behind a failure, whether a frame is taken in time is an answer, and is not said") {
+  World world{1};
+  PlayedBus::Conditions conditions;
+  conditions.room = 1;
+  conditions.frame_time = 5ms;
+  conditions.stuck = {{World::start, World::start + 100ms}, {World::start + 110ms, never}};
+  PlayedBus bus{world, conditions};
+  Outgoing outgoing{bus, "drive"};
+  const auto is_taken = [&world](Outgoing& out, const can::Frame& each, Duration patience) {
+    std::pair<bool, Duration> answer;
+    const Moment begin = world.now();
+    const Leaving said = leaving([&] { answer.first = out.is_taken(each, patience); });
+    CHECK(said.text.empty());
+    CHECK_FALSE(said.code);
+    answer.second = world.now() - begin;
+    return answer;
+  };
+  CHECK(is_taken(outgoing, frame("201#0000000000000000"), 0ms).first);
+  const auto later = is_taken(outgoing, frame("201#0000000000000000"), 1s);  // when the first has left
+  CHECK(later.first);
+  CHECK(later.second >= 99ms);
+  CHECK(later.second < 105ms);
+  world.pass(20ms);
+  CHECK(is_taken(outgoing, frame("201#0000000000000000"), 50ms).first);
+  const auto never_taken = is_taken(outgoing, frame("201#0000000000000000"), 50ms);
+  CHECK_FALSE(never_taken.first);
+  CHECK(never_taken.second >= 50ms);
+  CHECK(never_taken.second < 55ms);
+  CHECK(bus.sent().size() == 3);
+  // What can never be sent is not waited for.
+  can::Frame wrong = frame("205#00");
+  wrong.id = 0x800;
+  const auto invalid = is_taken(outgoing, wrong, 1s);
+  CHECK_FALSE(invalid.first);
+  CHECK(invalid.second < 5ms);
+  conditions.gone = world.now() + 10ms;
+  PlayedBus going{world, conditions};
+  Outgoing other{going, "drive"};
+  world.pass(20ms);
+  const auto gone = is_taken(other, frame("201#0000000000000000"), 1s);
+  CHECK_FALSE(gone.first);
+  CHECK(gone.second < 5ms);
 }
 
 }  // namespace tool_clock_outgoing_test

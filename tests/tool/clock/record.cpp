@@ -507,6 +507,58 @@ TEST_CASE("recorder: frames are written once a second, and at once where they ar
   CHECK(writes(true) > 100);
 }
 
+/// There is always one more batch of frames, each of which takes a millisecond to fetch.
+class Flood final : public record::Capture {
+ public:
+  explicit Flood(World& world) : world_(&world) {
+    world.inputs[descriptor()] = [] { return World::start; };
+  }
+  std::size_t read(std::span<log::Entry> into, std::uint16_t interface) override {
+    world_->pass(1ms);
+    const std::size_t count = std::min(into.size(), batch);
+    for (log::Entry& entry : into.first(count))
+      entry = {world_->wall_at(world_->now()), can::Frame{0x601, 4, {}}, interface};
+    return count;
+  }
+  std::string_view name() const override { return "can0"; }
+  int descriptor() const override { return 1000; }
+  BusState state() const override { return BusState::up; }
+  const transport::Failure& failure() const override { return failure_; }
+  std::uint64_t lost() const override { return 0; }
+  std::uint32_t bit_rate() const override { return 0; }
+  bool keeps_times() const override { return true; }
+  bool may_return() const override { return false; }
+
+ private:
+  World* world_;
+  transport::Failure failure_;
+};
+
+TEST_CASE("recorder: of a flood without end, what came before the end is fetched for a second at most") {
+  const Silence silence;
+  const Folder folder;
+  World world{1};
+  record::Files files{to_one_file(folder), amiro::catalogue};
+  REQUIRE(files.open().ok());
+  std::vector<record::Port> ports(1);
+  ports[0].name = "can0";
+  ports[0].capture = std::make_unique<Flood>(world);
+  record::Limits limits;
+  limits.duration = 1s;
+  const auto reopen = [](std::string_view) -> transport::Outcome<std::unique_ptr<record::Capture>> {
+    return transport::Failure{"away", ""};
+  };
+  record::Recorder recorder{std::move(ports), reopen, files, limits, false};
+  world.beside = [&recorder] { static_cast<void>(recorder.writing().step(0ms)); };
+  recorder.receive();
+  world.beside = nullptr;
+  while (recorder.writing().step(0ms)) world.pass(1ms);
+  CHECK(recorder.lasted() >= 2s);
+  CHECK(recorder.lasted() < 2100ms);
+  CHECK(recorder.ports()[0].received > 2000 * 50);
+  CHECK(recorder.ports()[0].received == recorder.received() + recorder.ports()[0].lost_here);
+}
+
 /// No frame comes. It is down for a second, then up, and closed from then on.
 class Changing final : public record::Capture {
  public:

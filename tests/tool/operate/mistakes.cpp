@@ -233,6 +233,31 @@ TEST_CASE("operate: a distance of two values is rounded up to whole steps, and i
   }
 }
 
+TEST_CASE("operate: a distance is the same where raw numbers fall while values rise") {
+  const auto fan =
+      spec::parse("BU_: N\nBO_ 256 Fan: 8 N\n SG_ Volts : 0|8@1+ (-0.5,0) [0|0] \"V\" N\n", "fan.dbc");
+  REQUIRE(fan.spec);
+  struct Typed {
+    const char* typed;
+    std::int64_t raw;
+  };
+  for (const auto& [typed, raw] : {Typed{"1V", 2}, Typed{"0.6V", 2}, Typed{"0.1V", 1}}) {
+    CAPTURE(typed);
+    const auto loaded = operate::parse(
+        R"({"name": "fan", "initial": "all", "fall_back": "all", "settle": "60ms", "reaction": "20ms", "handling": "1ms",
+            "configurations": [{"name": "all", "streams": [{"topic": "Fan", "period": "100ms"}]}],
+            "monitors": [{"name": "low", "when": {"where": "Fan.Volts<-10V", "hysteresis": ")" +
+            std::string{typed} + R"("}}]})",
+        "fan", fan.spec->catalogue(), 500'000);
+    for (const auto& problem : loaded.problems) UNSCOPED_INFO(problem.place << ": " << problem.what);
+    REQUIRE(loaded.file);
+    REQUIRE(loaded.file->conditions.size() == 1);
+    CHECK(loaded.file->conditions[0].is == reflective::Is::above);
+    CHECK(loaded.file->conditions[0].limit == 20);
+    CHECK(loaded.file->conditions[0].hysteresis == raw);
+  }
+}
+
 TEST_CASE("operate: a load of the bus is rounded to per mille, with and without its sign") {
   struct Typed {
     const char* typed;

@@ -88,6 +88,10 @@ TEST_CASE("only an option that fills its column has one blank before its descrip
   CHECK(folded_help("  --spec FILE (AMIROCTL_SPE topics of another robot, as JSON", 54) ==
         "  --spec FILE (AMIROCTL_SPE topics of another robot,\n"
         "    as JSON");
+  // One that is longer than its column has two.
+  CHECK(folded_help("  --an-option-with-a-very-long-name  what it is for, said in some words", 60) ==
+        "  --an-option-with-a-very-long-name\n"
+        "      what it is for, said in some words");
 }
 
 TEST_CASE("whatever the width, words stay whole and in order, and lines are no longer than they must be",

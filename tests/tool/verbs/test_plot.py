@@ -208,6 +208,12 @@ class Plot(Case):
         os.chmod(os.path.join(self.folder, "gnuplot"), 0o755)
         out, err = self.run_tool("plot", self.gyro(), "gyro.z", code=1)
         self.assertEqual((out, err.split("\n")[0]), ("", "amiroctl: gnuplot draws nothing: plot x; \tline 2: no font; end"))
+        # Of much of it the first lines, up to the one with the 300th character.
+        for length, more in ((299, "; next"), (300, "")):
+            with open(os.path.join(self.folder, "gnuplot"), "w", encoding="ascii") as file:
+                file.write(f"#!/bin/sh\nprintf '%s\\nnext\\nlast\\n' {'x' * length} >&2; exit 1\n")
+            _, err = self.run_tool("plot", self.gyro(), "gyro.z", code=1)
+            self.assertEqual(err.split("\n")[0], f"amiroctl: gnuplot draws nothing: {'x' * length}{more}")
 
     def test_the_address_of_the_live_page(self):
         """Fields as an address has them, in their order."""

@@ -93,6 +93,14 @@ class Usage(Case):
 
     def test_another_spec(self):
         self.refused(["--spec", os.path.join(self.folder, "none.json"), "list"], "none.json", code=1)
+        # Whatever kind of bus it is for.
+        none = os.path.join(self.folder, "none.json")
+        for bus in ("can0", "sim", "sim:lab", "slcan:/dev/ttyACM0", "slcan:/dev/ttyACM0@500000"):
+            _, err = self.run_tool("--spec", f"{bus}={none}", "list", code=1)
+            self.assertIn(none, err)
+            self.assertNotIn("cannot be an interface", err)
+        for bus in ("slcan:", "can:0", "can/0", "."):
+            self.refused(["--spec", f"{bus}={none}", "list"], f"there is no such file, and '{bus}' cannot be an interface")
         bad = os.path.join(self.folder, "bad.json")
         with open(bad, "w", encoding="utf-8") as file:
             file.write('{ "robot": "x",\n  oops }')

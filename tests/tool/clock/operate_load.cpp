@@ -1,0 +1,69 @@
+// What `operate` makes of a bus on which there is more than it has room for: a load of 100 %, and no more.
+#include <csignal>
+#include <string>
+#include <string_view>
+#include <unistd.h>
+#include <utility>
+
+#include <catch2/catch.hpp>
+#include <fmt/format.h>
+
+#include "ocm/topics/amiro.hpp"
+
+#include "cli/operate/runner.hpp"
+#include "tests/tool/captured.hpp"
+#include "tests/tool/clock/played_bus.hpp"
+
+namespace tool_clock_operate_load_test {
+
+using namespace ocm;
+using namespace ocm::test;
+namespace operate = cli::operate;
+
+constexpr std::string_view file_text = R"({
+  "name": "load", "initial": "watching", "fall_back": "halted", "settle": "60ms", "reaction": "5ms", "handling": "1ms",
+  "configurations": [
+    {"name": "watching", "streams": [{"topic": "odometry", "period": "50ms"}]},
+    {"name": "halted", "streams": [{"topic": "odometry", "period": "50ms"}]}
+  ],
+  "monitors": [{"name": "full", "when": {"bus_load": true, "above": "LIMIT", "window": "100ms"}}],
+  "transitions": [
+    {"from": "watching", "to": "halted", "when": "full"},
+    {"from": "halted", "to": "watching", "on_request": true}
+  ]
+})";
+
+/// All that it prints in a second, while ten times as many bits come as the bus has room for.
+std::string printed(std::string_view limit) {
+  std::string text{file_text};
+  text.replace(text.find("LIMIT"), std::string_view{"LIMIT"}.size(), limit);
+  const auto loaded = operate::parse(text, "load.operator.json", amiro::catalogue, 500'000);
+  for (const auto& problem : loaded.problems) UNSCOPED_INFO(problem.place << ": " << problem.what);
+  REQUIRE(loaded.file);
+  World world{1};
+  world.interrupt(World::start + 1s, SIGINT);
+  PlayedBus::Conditions conditions;
+  for (int i = 0; i < 1000; ++i)
+    conditions.incoming.push_back({World::start + i * 1ms, can::Frame{.id = 0x7F0, .dlc = 8}});
+  PlayedBus bus{world, std::move(conditions), fmt::format("load-{}", ::getpid())};
+  const auto control = operate::Control::open(bus.name());
+  REQUIRE(control);
+  world.inputs[(*control)->descriptor()] = [] { return Moment::max(); };
+  const operate::RunOptions options{false, 10'000, {}};
+  Captured out{STDOUT_FILENO}, err{STDERR_FILENO};
+  {
+    operate::Runner runner{bus, **control, amiro::catalogue, *loaded.file, options};
+    CHECK(runner.run() == cli::Over::signal);
+    runner.rest();
+    runner.sum_up();
+  }
+  static_cast<void>(err.text());
+  return out.text();
+}
+
+TEST_CASE("operate: a bus on which more comes than it has room for is full, and not more than that") {
+  CHECK_THAT(printed("99.9%"), Catch::Contains("watching -> halted: "));
+  CHECK_THAT(printed("100%"), Catch::Contains("operator load is in watching") && !Catch::Contains(" -> "));
+}
+
+}  // namespace tool_clock_operate_load_test
