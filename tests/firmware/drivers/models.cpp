@@ -687,6 +687,7 @@ TEST_CASE("LIS331DLH: each full scale, twelve bits on the left, and how long eac
   static constexpr std::pair<std::uint8_t, std::array<int, 3>> scales[] = {
       {0x00, {16 * 1024, -16 * 1024, 16 * 4}},
       {0x10, {16 * 512, -16 * 512, 16 * 2}},
+      {0x20, {0, 0, 0}},  // none
       {0x30, {16 * 256, -16 * 256, 16}}};
   Accelerometer a;
   a.put(a.model, 0x20, 0x27);

@@ -15,7 +15,10 @@
 #include <catch2/catch.hpp>
 
 #include "ocm/simulation/arbiter.hpp"
+#include "ocm/topics/amiro.hpp"
 #include "ocm/transport/bus.hpp"
+
+#include "sim/serve/amiro.hpp"
 
 namespace sim_serve_messages_test {
 
@@ -141,7 +144,7 @@ TEST_CASE("Where nothing can be played, the reason that helps most is said") {
   CHECK(ending({rare}, "").failures[0].what == "sim: no message of 'bus' has a period that could be played");
 }
 
-/// A CAN interface that answers what a test says, and on which no other node sends.
+/// A CAN interface that answers what a test says, and on which no other node sends but what `coming` has.
 class Interface final : public transport::Bus {
  public:
   std::string_view name() const override { return "can9"; }
@@ -150,7 +153,13 @@ class Interface final : public transport::Bus {
     if (answer.ok() && *answer) sent.push_back(frame);
     return answer;
   }
-  base::Result<can::Received> receive(base::Duration) override { return base::Error::timed_out; }
+  base::Result<can::Received> receive(base::Duration) override {
+    if (coming.empty()) return base::Error::timed_out;
+    can::Received received;
+    received.frame = coming.back();
+    coming.pop_back();
+    return received;
+  }
   transport::Outcome<void> subscribe(std::span<const can::Filter>) override { return {}; }
   int descriptor() const override { return -1; }
   const transport::BusCounters& counters() const override { return counters_; }
@@ -162,7 +171,7 @@ class Interface final : public transport::Bus {
   base::Result<bool> answer{true};
   bool gone = false;
   transport::Failure failed{"can9 is gone", "plug it in"};
-  std::vector<can::Frame> sent;
+  std::vector<can::Frame> sent, coming;
   int asked = 0;
 
  private:
@@ -199,6 +208,29 @@ TEST_CASE("What finds a CAN interface full waits, a thousand frames at most, and
   REQUIRE(line != said.end());
   CHECK(line->ends_with(" dropped: the bus was full"));
   CHECK_FALSE(line->starts_with(beginning + "0 dropped"));
+}
+
+TEST_CASE("Boards of an AMiRo that find a CAN interface full try again each millisecond") {
+  Interface bus;
+  bus.answer = false;
+  // The gyroscope is asked for a sample every 20 ms.
+  bus.coming.push_back({0x200U + amiro::Gyroscope::id.value, 4, {0x01, 20}});
+  const auto give_up = Clock::now() + 20s;
+  int turns = 0;  // since the first frame was refused
+  Clock::time_point begin, end;
+  Lines said;
+  sim::Shell shell = reporting_to(said);
+  shell.stop = [&] {
+    if (bus.asked == 0) return Clock::now() > give_up;
+    ++turns;
+    if (turns == 1) begin = Clock::now();
+    if (turns == 101) end = Clock::now();
+    return turns == 101;
+  };
+  CHECK(sim::serve_amiro(bus, {}, shell).well());
+  REQUIRE(turns == 101);
+  CHECK(end - begin >= 90ms);
+  CHECK(bus.sent.empty());
 }
 
 TEST_CASE("What a CAN interface refuses for good is counted, and one that is gone ends the simulation") {

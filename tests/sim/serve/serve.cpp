@@ -338,6 +338,7 @@ TEST_CASE("A second AMiRo on the same bus fails, and the options are not to blam
 }
 
 TEST_CASE("Mappers behind a central, or each on a line, report what each of them did") {
+  CHECK(sim::MapperOptions{}.speed == 1);  // in real time, unless they are asked for more
   const Folder folder;
   for (const bool lines : {false, true}) {
     CAPTURE(lines);

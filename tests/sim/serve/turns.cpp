@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -15,6 +16,7 @@
 
 #include "sim/serve/clock.hpp"
 #include "sim/serve/interference.hpp"
+#include "sim/serve/round.hpp"
 
 namespace sim_serve_turns_test {
 
@@ -110,6 +112,34 @@ TEST_CASE("simulated time goes as fast as it is asked to, and a wait for it is s
   const base::Duration behind = fast.behind(fast.now() - 10s);
   CHECK(behind >= 10ms);
   CHECK(behind < 5s);
+}
+
+TEST_CASE("a simulation is late when it is behind by a second, ten times in a row, and says so once") {
+  const sim::SimulatedClock clock{1};
+  std::vector<std::string> said;
+  sim::Lateness lateness{[&said](std::string_view text) { said.emplace_back(text); }};
+  const auto note = [&](base::Duration behind, unsigned times) {
+    for (unsigned i = 0; i < times; ++i) lateness.note(sim::Round{clock.now() - behind}, clock);
+  };
+  lateness.sum_up();
+  note(100ms, 50);
+  note(2s, 9);
+  note(100ms, 1);  // it has caught up
+  note(2s, 9);
+  CHECK(said.empty());
+  lateness.sum_up();  // late, and not for long enough
+  CHECK(said.empty());
+  note(2s, 1);
+  REQUIRE(said.size() == 1);
+  CHECK(said[0].starts_with("the simulation is late: "));
+  note(1h, 50);
+  CHECK(said.size() == 1);
+  lateness.sum_up();
+  REQUIRE(said.size() == 2);
+  CHECK(said[1].starts_with("late              by 3600."));
+  note(100ms, 1);
+  lateness.sum_up();  // in the end it is not
+  CHECK(said.size() == 2);
 }
 
 TEST_CASE("interference comes at random, as often as it is asked for, and none where it is not") {

@@ -26,6 +26,17 @@ TEST_CASE("meter: how far behind the grid of its sender a frame came") {
   CHECK(measured(Grid::of_sender, {20, 100, 300, 820, 920}).lateness == 20 * ms);
 }
 
+TEST_CASE("meter: two and a half periods without a frame are a pause, behind which the grid begins anew") {
+  CHECK(measured(Grid::of_sender, {0, 100, 349, 449}).lateness == 49 * ms);  // one is lost, and the next late
+  CHECK(measured(Grid::of_sender, {0, 100, 350, 450}).lateness == 0);
+}
+
+TEST_CASE("meter: clocks may drift apart: the grid begins anew every hundred frames") {
+  Meter meter;
+  for (std::int64_t i = 0; i < 250; ++i) meter.add(i * 1001 * ms / 10, 8, ms, 100 * ms);
+  CHECK(meter.finish().lateness == 99 * ms / 10);
+}
+
 TEST_CASE("meter: a set point that is changed begins another grid") {
   CHECK(measured(Grid::of_run, {0, 100, 140, 240, 341}).lateness == 1 * ms);
   CHECK(measured(Grid::of_run, {0, 100, 230, 300}).lateness == 30 * ms);  // a late one shows all the same

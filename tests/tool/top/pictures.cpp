@@ -210,8 +210,9 @@ TEST_CASE("top pictures: nothing came, and the help") {
 }
 
 TEST_CASE("top pictures: a click chooses a row, and none beside them does") {
-  const auto chosen = [](unsigned line) {
+  const auto chosen = [](unsigned line, bool long_list = false) {
     Bus2 bus;
+    for (std::uint32_t id = 0x700; long_list && id < 0x714; ++id) bus.model().take(entry(2990ms, id, {1}));
     bus.press({Key{Kind::click, {}, line}}, {80, 10});
     std::istringstream lines{bus.draw({80, 10})};
     std::string before;
@@ -227,6 +228,9 @@ TEST_CASE("top pictures: a click chooses a row, and none beside them does") {
   CHECK(chosen(7) == "18FF0001");
   CHECK(chosen(8) == "none");  // below the last
   CHECK(chosen(9) == "none");
+  // Of a list that is longer than the screen the last line in sight, and not the keys below it.
+  CHECK(chosen(8, true) == "700");
+  CHECK(chosen(9, true) == "none");
 }
 
 TEST_CASE("top pictures: pages, and the ends of the list") {

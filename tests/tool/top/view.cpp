@@ -304,6 +304,18 @@ TEST_CASE("top: a row opens into a line a field, and the cursor stays where it i
   CHECK(robot.names().size() == 6);
 }
 
+TEST_CASE("top: of a field that has kept its value for a second it is said for how long") {
+  Robot robot;
+  robot.draw();
+  robot.view.press(Key{Kind::down});
+  robot.view.press(Key{Kind::enter});
+  CHECK(robot.line("  weight").find("unchanged") == std::string::npos);  // it is seen now
+  robot.now += 1s - 1ns;
+  CHECK(robot.line("  weight").find("unchanged") == std::string::npos);
+  robot.now += 1ns;
+  CHECK(robot.line("  weight").ends_with("  unchanged 1.0s"));
+}
+
 TEST_CASE("top: a multiplexer's other pages keep their values and their places") {
   using ocm::protocol::ByteOrder;
   constexpr ocm::protocol::SelectorRange pages[] = {{0, 0}, {1, 1}};

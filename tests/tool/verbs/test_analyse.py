@@ -715,6 +715,19 @@ b,15,20000000,20000000,20000000,20000000,0,136000,300000,true
         close = regular + [(t + 20, "102#0102") for t, f in regular if f.startswith("102") and t == 500900]
         self.assertIn("bit rate", " ".join(self.trace(close, code=1)[1]["broken"]))
 
+    def test_times_of_a_log_are_no_finer_than_a_microsecond(self):
+        """b takes 136 us, 300 us at most, and comes every 20 ms: what is a microsecond beside that contradicts nothing, two do."""
+        def frames(*times):
+            return [(300 + i * 10000, "101#0102") for i in range(10)] + [(t, "102#0102") for t in times]
+        rounded = [frames(300 + 135, 20300 + 135, 40300 + 135),  # behind a, sooner than the bit rate allows
+                   frames(5000, 5000 + 19979, 5000 + 2 * 19979),  # a tenth of a percent sooner on average
+                   frames(5000, 25000 + 165, 45000)]  # later than the bound
+        for log in rounded:
+            self.assertEqual(self.trace(log)[1]["broken"], [])
+        self.assertIn("bit rate: 3 frames came sooner", self.broken(frames(300 + 134, 20300 + 134, 40300 + 134), "bit rate"))
+        self.assertIn("b came every 19.978ms", self.broken(frames(5000, 5000 + 19978, 5000 + 2 * 19978), "period"))
+        self.assertIn("b came up to 166us behind", self.broken(frames(5000, 25000 + 166, 45000), "jitter"))
+
     def test_the_robot(self):
         """Requests in the log say the periods; what was not requested is not in the set."""
         frames = [(0, "208#01320000")] + [(1000 + i * 50000, "608#000000000000") for i in range(50)]
@@ -806,6 +819,24 @@ class Picture(Analyse):
         with open(os.path.join(SOURCE, "docs", "images", "worst_case.svg"), encoding="utf-8") as picture:
             self.assertEqual(out, picture.read(), "the picture of the docs is another: scripts/pictures worst_case")
         self.run_tool("analyse", "bus", "--svg", os.path.join(self.folder, "none", "x.svg"), code=1)
+
+    def test_releases_that_are_later_than_a_period(self):
+        """The first one comes 25 ns late, and each next one as soon as it may: 1 ns behind it, and every 10 ns from there."""
+        out, _ = self.run_tool("analyse", "tasks", self.file(TASKS + "a,1,1,10,,25,\n"), "--svg", "-", code=1)
+        arrows = [float(path.get("d")[1:].split()[0]) for path in ElementTree.fromstring(out).iter("{http://www.w3.org/2000/svg}path")]
+        first, nanosecond = arrows[0], arrows[1] - arrows[0]
+        self.assertEqual(len(arrows), 4)
+        self.assertAlmostEqual((arrows[2] - first) / nanosecond, 11, places=1)
+        self.assertAlmostEqual((arrows[3] - first) / nanosecond, 21, places=1)
+
+    def test_what_waits_for_its_own_release_is_behind_nothing_less_urgent(self):
+        out, _ = self.run_tool("analyse", "bus", self.file(DAVIS), "--bitrate", "125k", "--test", "sufficient", "--svg", "-", code=1)
+        self.assertIn("Worst case of c<", out)
+        self.assertIn("7ms of 3.25ms, 3.75ms late", out)
+        self.assertNotIn('fill="#bbb"', out)
+        # a is behind b, the longest that is less urgent.
+        out, _ = self.run_tool("analyse", "bus", self.file(DAVIS.replace("2500000,,", "2500000,2000000,")), "--bitrate", "250k", "--svg", "-")
+        self.assertEqual(out.count('fill="#bbb"'), 1)
 
 
 class Dbc(Analyse):
@@ -1076,6 +1107,19 @@ BA_ "GenSigSendType" SG_ 8 b 1;
         self.assertIn("79 clocks, of 64", out)
         out, err = self.run_tool("analyse", "bus", self.file(many.replace(' 5;\n', ' 0;\n'), "none.dbc"))
         self.assertNotIn("clocks", out + err)  # nothing is left out of account
+
+    def test_what_has_a_clock_of_its_own(self):
+        """A message of no node, and one that is also sent on events, whoever sends it: 70 of either beside the one that is delayed."""
+        for sender, sent_on_events in (("Vector__XXX", False), ("Engine", True)):
+            text = "BU_: Engine\nBO_ 1 m1: 0 Engine\n" + "".join(f"BO_ {i} m{i}: 0 {sender}\n" for i in range(2, 72))
+            text += 'BA_DEF_ BO_ "GenMsgSendType" ENUM "Cyclic","CyclicAndEvent";\n'
+            text += "".join(f'BA_ "GenMsgCycleTime" BO_ {i} 1000;\n' for i in range(1, 72))
+            text += 'BA_ "GenMsgStartDelayTime" BO_ 1 5;\n'
+            if sent_on_events:
+                text += "".join(f'BA_ "GenMsgSendType" BO_ {i} 1;\nBA_ "GenMsgDelayTime" BO_ {i} 1000;\n' for i in range(2, 72))
+            out, _ = self.run_tool("analyse", "bus", self.file(text, "clocks.dbc"))
+            self.assertIn("The start delays do not count: there are 71 clocks, of 64 at most.", out)
+            self.assertNotIn("with offsets", out)
 
     def test_no_message_is_dropped_in_silence(self):
         """Whatever a file says: each message is in the set, or left out with a reason; J1939's long ones, too."""

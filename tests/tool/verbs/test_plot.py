@@ -228,6 +228,7 @@ class Plot(Case):
 
     def test_names_that_mean_something_to_gnuplot_or_xml(self):
         path = self.log([(100 * i, "608#" + i16(i, i, i)) for i in range(3)], "a'b<c>&{}_^`!.log")
+        self.assertIn("set label 1 '?a b?' at", self.script(path, "gyro.z", "--title", "\x1fa b\x7f"))  # no controls of a terminal
         svg, _ = self.run_tool("plot", path, "gyro.z", "--title", "it's `date` <b> {x_1} \\n @home ~a")
         self.assertIn("it's `date` <b> {x_1} \\n @home ~a", self.texts(svg))
         svg, _ = self.run_tool("plot", path, "gyro.z")

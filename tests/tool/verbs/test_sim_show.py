@@ -125,7 +125,7 @@ class Show(screens.Screens):
 
     def test_the_page_of_a_simulation(self):
         """Its address is printed once there is something to look at, and it ends with the simulation, which ends as without it."""
-        for options, shown in (((), ""), (("--world", "square", "--robots", "1"), "map")):
+        for options, shown in (((), ""), (("--world", "square", "--robots", "1"), "map"), (("--allow-commands",), "[0-9a-f]{32}")):
             process = self.start("sim", "--show=page", "--port", "0", *options)
             line = process.stdout.readline()
             self.assertRegex(line, rf"^http://127\.0\.0\.1:\d+/{'#' + shown if shown else ''}\n$")

@@ -371,6 +371,21 @@ class Top(played_adapter.WithAdapter, screens.Screens):
         self.assertEqual(top.wait(timeout=30), 0)
         return shown.decode(errors="replace")
 
+    def test_a_terminal_that_is_closed_ends_it(self):
+        """One that is not its own, so that no signal says so."""
+        primary, secondary = pty.openpty()
+        fcntl.ioctl(secondary, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 100, 0, 0))
+        top = harness.waiting.Program([harness.AMIROCTL, "top", self.log()], stdin=secondary, stdout=secondary, stderr=subprocess.DEVNULL,
+                                      env={**self.environment, "TERM": "xterm"}, start_new_session=True)
+        self._started.append(top)
+        os.close(secondary)
+        shown = b""
+        while b"gyroscope" not in shown:
+            self.assertTrue(select.select([primary], [], [], 30)[0], shown[-1000:])
+            shown += os.read(primary, 65536)
+        os.close(primary)
+        self.assertEqual(top.wait(timeout=30), 0)
+
     def test_colours_and_none(self):
         log = self.log(seconds=1)
         colour = re.compile(r"\x1b\[(?:\d+;)*(?:3[0-8]|4[0-8]|9[0-7]|10[0-7])(?:;\d+)*m")
