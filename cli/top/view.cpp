@@ -248,7 +248,7 @@ Picture View::draw(const Scene& scene, TerminalSize size) {
   for (std::size_t i = first_; i < all.size() && i < first_ + list_lines_; ++i)
     picture.push_back(all[i].key.is_row() ? row_line(columns, scene, all[i], size.columns)
                                           : field_line(columns, scene, all[i], size.columns));
-  if (all.empty() && list_lines_ > 0) {
+  if (all.empty()) {
     LineWriter line{size.columns};
     line.put(filter_.empty() ? "nothing came yet" : "no name has these letters", Style::dim);
     picture.push_back(line.take());
