@@ -126,16 +126,6 @@ class Robots(Case):
         viewer = self.viewer(port, token, "/ocm/fleet")
         state = self.state(viewer, lambda s: len(s["robots"]) == 2, "two robots")
         self.assertEqual(state["unplaced"], ["AVR", "Arduino"])
-
-    def test_a_robot_that_a_look_finds_and_that_cannot_be_linked_is_named(self):
-        self.central.robots = [self.avr]
-        _, port, token = self.serve("--allow-commands", starts=())
-        viewer = self.viewer(port, token, "/ocm/fleet")
-        self.state(viewer, lambda s: len(s["robots"]) == 1 and s["robots"][0]["at"], "one robot")
-        self.arduino.reachable = False
-        self.central.robots = [self.avr, self.arduino]
-        viewer.publish("/ocm/fleet", {"order": "look"})
-        self.says(viewer, "the central refuses Arduino: no link to 1")
         self.assertIsNone(state["robots"][0]["at"])
         self.robot(viewer, "AVR", lambda r: r["pose"], "its own place")
         viewer.publish("/ocm/fleet", {"robot": "AVR", "x_m": 1, "y_m": 0})
@@ -160,6 +150,16 @@ class Robots(Case):
         self.robot(viewer, "Arduino", lambda r: r["linked"], "a link to it")
         state = self.state(viewer, lambda s: not s["scans"] and len(s["unplaced"]) == 2, "that of two robots the starts must be known")
         self.assertEqual(state["unplaced"], ["AVR", "Arduino"])
+
+    def test_a_robot_that_a_look_finds_and_that_cannot_be_linked_is_named(self):
+        self.central.robots = [self.avr]
+        _, port, token = self.serve("--allow-commands", starts=())
+        viewer = self.viewer(port, token, "/ocm/fleet")
+        self.state(viewer, lambda s: len(s["robots"]) == 1 and s["robots"][0]["at"], "one robot")
+        self.arduino.reachable = False
+        self.central.robots = [self.avr, self.arduino]
+        viewer.publish("/ocm/fleet", {"order": "look"})
+        self.says(viewer, "the central refuses Arduino: no link to 1")
 
     # --- what is asked ---
 
