@@ -26,12 +26,12 @@ TEST_CASE("meter: how far behind the grid of its sender a frame came") {
   CHECK(measured(Grid::of_sender, {20, 100, 300, 820, 920}).lateness == 20 * ms);
 }
 
-TEST_CASE("meter: two and a half periods without a frame are a pause, behind which the grid begins anew") {
+TEST_CASE("meter: two and a half periods without a frame are a pause, behind which the grid begins again") {
   CHECK(measured(Grid::of_sender, {0, 100, 349, 449}).lateness == 49 * ms);  // one is lost, and the next late
   CHECK(measured(Grid::of_sender, {0, 100, 350, 450}).lateness == 0);
 }
 
-TEST_CASE("meter: clocks may drift apart: the grid begins anew every hundred frames") {
+TEST_CASE("meter: clocks may drift apart: the grid begins again every hundred frames") {
   Meter meter;
   for (std::int64_t i = 0; i < 250; ++i) meter.add(i * 1001 * ms / 10, 8, ms, 100 * ms);
   CHECK(meter.finish().lateness == 99 * ms / 10);

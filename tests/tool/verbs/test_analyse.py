@@ -1109,7 +1109,7 @@ BA_ "GenSigSendType" SG_ 8 b 1;
         self.assertNotIn("clocks", out + err)  # nothing is left out of account
 
     def test_what_has_a_clock_of_its_own(self):
-        """A message of no node, and one that is also sent on events, whoever sends it: 70 of either beside the one that is delayed."""
+        """A message of no node, and one that is also sent on events, whichever node sends it: 70 of either beside the one that is delayed."""
         for sender, sent_on_events in (("Vector__XXX", False), ("Engine", True)):
             text = "BU_: Engine\nBO_ 1 m1: 0 Engine\n" + "".join(f"BO_ {i} m{i}: 0 {sender}\n" for i in range(2, 72))
             text += 'BA_DEF_ BO_ "GenMsgSendType" ENUM "Cyclic","CyclicAndEvent";\n'
