@@ -17,6 +17,13 @@ class Screens(harness.Case):
         self.tmux("start-server", ";", "set-option", "-g", "exit-empty", "off")
 
     def end_terminal(self):
+        """With what runs in it: LeakSanitizer looks at a program that ends, and a terminal that hangs up meanwhile hangs it, busy."""
+        listed = subprocess.run(self.command("list-panes", "-a", "-F", "#{pane_pid}"), env=self.environment, capture_output=True, text=True, check=False)
+        for shell in listed.stdout.split():
+            programs = subprocess.run(["pgrep", "-P", shell], capture_output=True, text=True, check=False).stdout.split()
+            for program in programs:
+                subprocess.run(["pkill", "-KILL", "-P", program], check=False)
+            subprocess.run(["pkill", "-KILL", "-P", shell], check=False)
         subprocess.run(self.command("kill-server"), env=self.environment, stderr=subprocess.DEVNULL, check=False)
 
     def command(self, *words):
