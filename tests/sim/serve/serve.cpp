@@ -94,21 +94,32 @@ bool any_begins(const std::vector<std::string>& lines, std::string_view text) {
                      [text](const std::string& line) { return line.starts_with(text); });
 }
 
+/// The spec of a car with one message of eight bytes, which is sent each `cycle`.
+struct OneMessage {
+  explicit OneMessage(base::Duration cycle) {
+    layout.length = 8;
+    layout.address = {protocol::Address::By::identifier, false, 0x100};
+    message.name = "M";
+    message.kind = protocol::Kind::message;
+    message.frames = {&layout, 1};
+    message.cycle = cycle;
+  }
+  OneMessage(const OneMessage&) = delete;
+  OneMessage& operator=(const OneMessage&) = delete;
+
+  protocol::FrameLayout layout;
+  protocol::Topic message;
+  protocol::Catalogue catalogue{"car", 500'000, {}, {&message, 1}};
+};
+
 TEST_CASE("A simulation with more to do than the machine does ends when it is asked to, and says so") {
   const Folder folder;
   const std::string_view late = "the simulation is late: more is due than this machine can do";
   {
-    protocol::FrameLayout layout;
-    layout.length = 8;
-    layout.address = {protocol::Address::By::identifier, false, 0x100};
-    protocol::Topic message;
-    message.name = "M";
-    message.kind = protocol::Kind::message;
-    message.frames = {&layout, 1};
-    message.cycle = base::Duration{2};  // a period in another unit than milliseconds: 0.000002
-    const protocol::Catalogue catalogue{"car", 500'000, {}, {&message, 1}};
-    const auto reports = overloaded(
-        [&](const sim::Shell& shell) { return sim::serve_messages(folder / "bus", catalogue, {}, shell); });
+    const OneMessage sent{base::Duration{2}};  // a period in another unit than milliseconds: 0.000002
+    const auto reports = overloaded([&](const sim::Shell& shell) {
+      return sim::serve_messages(folder / "bus", sent.catalogue, {}, shell);
+    });
     CHECK(reports.at(0).starts_with("simulated 1 message of car"));
     CHECK(any_begins(reports, late));
     CHECK(any_begins(reports, "unknown sender    sent "));
@@ -237,20 +248,13 @@ int turns_of(const std::function<Ending(const sim::Shell& shell)>& serve) {
 TEST_CASE("A simulation with little to do waits until there is something") {
   const Folder folder;
   Interface bus{std::vector<can::Frame>{}};
-  protocol::FrameLayout layout;
-  layout.length = 8;
-  layout.address = {protocol::Address::By::identifier, false, 0x100};
-  protocol::Topic message;
-  message.name = "M";
-  message.kind = protocol::Kind::message;
-  message.frames = {&layout, 1};
-  message.cycle = std::chrono::milliseconds{50};
-  const protocol::Catalogue catalogue{"car", 500'000, {}, {&message, 1}};
+  const OneMessage sent{std::chrono::milliseconds{50}};
   CHECK(turns_of([&](const sim::Shell& shell) {
-          return sim::serve_messages(folder / "bus", catalogue, {}, shell);
+          return sim::serve_messages(folder / "bus", sent.catalogue, {}, shell);
         }) < 100);
-  CHECK(turns_of([&](const sim::Shell& shell) { return sim::serve_messages(bus, catalogue, {}, shell); }) <
-        100);
+  CHECK(turns_of([&](const sim::Shell& shell) {
+          return sim::serve_messages(bus, sent.catalogue, {}, shell);
+        }) < 100);
   CHECK(turns_of([&](const sim::Shell& shell) { return sim::serve_amiro(folder / "bus", {}, shell); }) <
         2000);
   CHECK(turns_of([&](const sim::Shell& shell) { return sim::serve_amiro(bus, {}, shell); }) < 2000);

@@ -389,10 +389,28 @@ TEST_CASE("recorder: whatever happens to program, clock, buses and disk, no fram
   }
 }
 
-/// Frames at their times, and how late each was fetched at most.
-class Fetched final : public record::Capture {
+/// A bus that is up and loses nothing; what comes is for each to say.
+class Up : public record::Capture {
  public:
-  Fetched(World& world, bool keeps_times, int frames = 20) : world_(&world), keeps_times_(keeps_times) {
+  explicit Up(bool keeps_times) : keeps_times_(keeps_times) {}
+  std::string_view name() const override { return "can0"; }
+  int descriptor() const override { return 1000; }
+  BusState state() const override { return BusState::up; }
+  const transport::Failure& failure() const override { return failure_; }
+  std::uint64_t lost() const override { return 0; }
+  std::uint32_t bit_rate() const override { return 0; }
+  bool keeps_times() const override { return keeps_times_; }
+  bool may_return() const override { return false; }
+
+ private:
+  bool keeps_times_;
+  transport::Failure failure_;
+};
+
+/// Frames at their times, and how late each was fetched at most.
+class Fetched final : public Up {
+ public:
+  Fetched(World& world, bool keeps_times, int frames = 20) : Up(keeps_times), world_(&world) {
     for (int i = 0; i < frames; ++i) arrivals_.push_back(World::start + 15ms + i * 10ms);
     world.inputs[descriptor()] = [this] {
       return next_ < arrivals_.size() ? arrivals_[next_] : Moment::max();
@@ -406,23 +424,13 @@ class Fetched final : public record::Capture {
     }
     return count;
   }
-  std::string_view name() const override { return "can0"; }
-  int descriptor() const override { return 1000; }
-  BusState state() const override { return BusState::up; }
-  const transport::Failure& failure() const override { return failure_; }
-  std::uint64_t lost() const override { return 0; }
-  std::uint32_t bit_rate() const override { return 0; }
-  bool keeps_times() const override { return keeps_times_; }
-  bool may_return() const override { return false; }
 
   Duration latest{};
 
  private:
   World* world_;
-  bool keeps_times_;
   std::vector<Moment> arrivals_;
   std::size_t next_ = 0;
-  transport::Failure failure_;
 };
 
 TEST_CASE(
@@ -508,9 +516,9 @@ TEST_CASE("recorder: frames are written once a second, and at once where they ar
 }
 
 /// There is always one more batch of frames, each of which takes a millisecond to fetch.
-class Flood final : public record::Capture {
+class Flood final : public Up {
  public:
-  explicit Flood(World& world) : world_(&world) {
+  explicit Flood(World& world) : Up(true), world_(&world) {
     world.inputs[descriptor()] = [] { return World::start; };
   }
   std::size_t read(std::span<log::Entry> into, std::uint16_t interface) override {
@@ -520,18 +528,9 @@ class Flood final : public record::Capture {
       entry = {world_->wall_at(world_->now()), can::Frame{0x601, 4, {}}, interface};
     return count;
   }
-  std::string_view name() const override { return "can0"; }
-  int descriptor() const override { return 1000; }
-  BusState state() const override { return BusState::up; }
-  const transport::Failure& failure() const override { return failure_; }
-  std::uint64_t lost() const override { return 0; }
-  std::uint32_t bit_rate() const override { return 0; }
-  bool keeps_times() const override { return true; }
-  bool may_return() const override { return false; }
 
  private:
   World* world_;
-  transport::Failure failure_;
 };
 
 TEST_CASE("recorder: of a flood without end, what came before the end is fetched for a second at most") {
