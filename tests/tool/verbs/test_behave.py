@@ -69,7 +69,7 @@ class Behave(Case):
         for command in (("behave", "none"), ("stop",)):
             behave = self.behaving("avoid")
             self.run_tool(*command)
-            _, err = behave.communicate(timeout=20)
+            _, err = behave.communicate(timeout=60)
             self.assertEqual(behave.returncode, 1, err)
             self.assertIn("avoid was ended: stopped", err)
             self.assertTrue(self.standing())
@@ -90,7 +90,7 @@ class Behave(Case):
         behave.send_signal(signal.SIGSTOP)
         time.sleep(2)  # longer than a program may be stopped
         behave.send_signal(signal.SIGCONT)
-        _, err = behave.communicate(timeout=20)
+        _, err = behave.communicate(timeout=60)
         self.assertEqual(behave.returncode, 1, err)
         self.assertRegex(err, "behave: this program did not run for .*, so the behaviour has ended; it was set to zero\n")
         waiting.until(lambda: '"0000' in listener.stdout.readline(), "zero")
@@ -114,7 +114,7 @@ class Behave(Case):
         self.assertIn("travel: another program commands motors", err)
         for number in (signal.SIGHUP, signal.SIGINT):  # the terminal is closed; Ctrl-C
             behave.send_signal(number)
-            _, err = behave.communicate(timeout=20)
+            _, err = behave.communicate(timeout=60)
             self.assertEqual(behave.returncode, 128 + number, err)
             self.assertTrue(self.standing())
             if number == signal.SIGHUP:
@@ -139,7 +139,7 @@ class Behave(Case):
         self.start_sim()
         behave = self.behaving("follow")
         self.run_tool("drive", "stop")
-        _, err = behave.communicate(timeout=20)
+        _, err = behave.communicate(timeout=60)
         self.assertEqual(behave.returncode, 1, err)
         self.assertIn("follow was ended: stopped", err)
 
@@ -181,7 +181,7 @@ class Behave(Case):
         self.assertEqual(said, "behave: no behaviour came, so nothing shows that di_wheel_drive has done it; "
                                "is board di_wheel_drive powered and on sim? See `amiroctl doctor`\n")
         behave.send_signal(signal.SIGINT)
-        _, err = behave.communicate(timeout=20)
+        _, err = behave.communicate(timeout=60)
         self.assertEqual((behave.returncode, err), (130, ""))
 
     def test_it_waits_between_two_looks_at_the_board(self):

@@ -33,7 +33,13 @@ class BrokenSpec(Case):
                 file.write(text)
 
     def processor_time(self, spec, words):
-        """Of the tool, which must refuse; with what it said."""
+        """Of the tool, which must refuse, the least of some runs if the first takes long: what else runs slows a processor. With what it said."""
+        err, seconds = self.refused(spec, words)
+        if seconds >= 0.1 and not sanitized():
+            seconds = min(self.refused(spec, words)[1] for _ in range(4))
+        return err, seconds
+
+    def refused(self, spec, words):
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
         done = subprocess.run([AMIROCTL, "--spec", spec, *(self.paths.get(word, word) for word in words)], env=self.environment, text=True,
                               stdin=subprocess.DEVNULL, capture_output=True, timeout=120, check=False)

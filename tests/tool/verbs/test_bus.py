@@ -11,6 +11,7 @@ import sys
 import time
 
 from harness import AMIROCTL, SOURCE, Case, main, waiting
+from realtime import RealTime
 
 sys.path.insert(0, os.path.join(SOURCE, "tests", "peers", "logs"))
 from virtual_bus import FRAME, GOODBYE, HELLO, MAGIC, OVERRUN, VERSION  # noqa: E402
@@ -19,7 +20,7 @@ from virtual_bus import FRAME, GOODBYE, HELLO, MAGIC, OVERRUN, VERSION  # noqa: 
 class OnTheBus(Case):
     def test_the_main_job(self):
         self.start_sim()
-        listener = self.listen("gyro", "-n", "3", "--timeout", "10s")
+        listener = self.listen("gyro", "-n", "3", "--timeout", "60s")
         _, err = self.run_tool("publish", "gyro", "100ms")
         self.assertEqual(err.splitlines(), ["bus: sim (the only one there is; --bus chooses)"])
         out, err = listener.communicate(timeout=60)
@@ -117,7 +118,7 @@ class OnTheBus(Case):
 
     def test_commands_are_shown_when_asked_for(self):
         self.start_sim()
-        listener = self.listen("--commands", "-n", "3", "--timeout", "10s")
+        listener = self.listen("--commands", "-n", "3", "--timeout", "60s")
         self.run_tool("stop", "mag")
         self.run_tool("publish", "gyro", "5s", "--priority", "high")
         out, _ = listener.communicate(timeout=60)
@@ -199,20 +200,9 @@ class OnTheBus(Case):
         self.run_tool("publish", "gyro", "10ms")
         with open("/dev/full", "w", encoding="utf-8") as full:
             result = subprocess.run([AMIROCTL, "listen", "--json"], env=self.environment, stdout=full, text=True,
-                                    stderr=subprocess.PIPE, timeout=10)
+                                    stderr=subprocess.PIPE, timeout=60)
         self.assertEqual(result.returncode, 1)
         self.assertIn("No space left", result.stderr)
-
-    def test_drive_repeats_and_ends_with_zero(self):
-        self.start_sim()
-        listener = self.listen("motors", "odom", "--timeout", "20s")
-        self.run_tool("drive", "5cm/s", "--for", "550ms")
-        self.settle()
-        out, _ = self.interrupt(listener)
-        frames = [line["data"] for line in self.objects(out)]
-        self.assertEqual(frames[-1], "0000000000000000")
-        self.assertEqual(set(frames[:-1]), {"50C3000000000000"})
-        self.assertIn(len(frames), (5, 6, 7))  # at 0, 100, ... 500 ms, and the zero; fewer only under load
 
     def test_ctrl_c_stops_the_motors(self):
         self.start_sim()
@@ -244,7 +234,8 @@ class OnTheBus(Case):
 
     def test_a_drive_that_was_stopped_does_not_go_on(self):
         self.start_sim()
-        did_not_run = r"drive: this program did not run for 1(\.\d+s|\d{3}ms|s), so the drive has ended; the motors were set to zero"
+        # A second or more: what is done while it is stopped takes as long as it takes.
+        did_not_run = r"drive: this program did not run for ([1-9]\d*(\.\d+)?s|\d{4,}ms), so the drive has ended; the motors were set to zero"
         for stopped, words in ((False, did_not_run), (True, "another program has set the motors to zero|" + did_not_run)):
             listener = self.listen("motors", "--timeout", "20s")
             drive = self.start("drive", "5cm/s")
@@ -281,8 +272,9 @@ class OnTheBus(Case):
     def test_a_simulator_that_is_stopped_is_no_quiet_bus(self):
         sim = self.start_sim()
         log = os.path.join(self.folder, "a.log")
-        verbs = [self.start(*verb) for verb in (["listen", "--timeout", "3s"], ["stats", "--duration", "3s"],
-                                                ["record", "-o", log, "--duration", "3s"])]
+        # So long that none of them ends before all have begun.
+        verbs = [self.start(*verb) for verb in (["listen", "--timeout", "10s"], ["stats", "--duration", "10s"],
+                                                ["record", "-o", log, "--duration", "10s"])]
         for verb in verbs:
             self.assertIn("bus: sim", verb.stderr.readline())
         self.settle()
@@ -349,12 +341,8 @@ class OnTheBus(Case):
         first.wait()
         self.refused = self.run_tool("once", "gyro", code=1)
         self.start("sim")
-        deadline = time.monotonic() + 10
-        while time.monotonic() < deadline:
-            if subprocess.run([AMIROCTL, "once", "gyro"], env=self.environment, capture_output=True).returncode == 0:
-                return
-            time.sleep(0.05)
-        self.fail("a new simulator cannot be reached")
+        waiting.until(lambda: subprocess.run([AMIROCTL, "once", "gyro"], env=self.environment, capture_output=True).returncode == 0,
+                      "a new simulator can be reached", 60)
 
     def test_the_same_seed_gives_the_same_robot(self):
         values = []
@@ -387,12 +375,48 @@ class OnTheBus(Case):
             self.assertIn(f"sim: {option} with --bus can0\n          leave one out: it is for the virtual bus\n", err)
 
 
+class InTime(Case):
+    """What is repeated each 100 ms, and what comes within 100 ms of its time: who was held up for so long was late."""
+
+    had_time = RealTime.had_time
+
+    def test_drive_repeats_and_ends_with_zero(self):
+        self.start_sim()
+        listener = self.listen("motors", "odom", "--timeout", "20s")
+        self.run_tool("drive", "5cm/s", "--for", "550ms")
+        self.settle()
+        out, _ = self.interrupt(listener)
+        frames = [line["data"] for line in self.objects(out)]
+        self.assertEqual(frames[-1], "0000000000000000")
+        self.assertEqual(set(frames[:-1]), {"50C3000000000000"})
+        self.assertIn(len(frames), (5, 6, 7))  # at 0, 100, ... 500 ms, and the zero; fewer only under load
+
+    def test_steps_come_at_their_times(self):
+        self.start_sim()
+        listener = self.listen("--commands", "led", "motors", "--timeout", "20s")
+        path = self.script("0s led 1 red\n5s led 2 red\n10s drive 5cm/s\n13s drive stop\n15s led 3 red\n")
+        self.run_tool("run", path, "--speed", "10")
+        self.settle()
+        out, _ = self.interrupt(listener)
+        frames = self.objects(out)
+        start = int(frames[0]["time_ns"])
+        at = {frame["topic"]: (int(frame["time_ns"]) - start) / 1e9 for frame in frames if frame["topic"] != "motors"}
+        self.assertAlmostEqual(at["led_2"], 0.5, delta=0.1)
+        self.assertAlmostEqual(at["led_3"], 1.5, delta=0.1)
+        motors = [frame["data"] for frame in frames if frame["topic"] == "motors"]
+        # Repeated at 100 and 200 ms; a machine under load may be too late for one, and for the stop, on which a third
+        # repeat falls.
+        self.assertIn(motors.count("50C3000000000000"), (2, 3, 4))
+        self.assertEqual(motors[-1], "0000000000000000")
+        self.assertEqual(motors.count("0000000000000000"), 1)
+
+
 class Library(Case):
     def test_the_operator_of_the_examples(self):
         self.start_sim()
         listener = self.listen("gyro", "--commands", "--timeout", "20s")
         result = subprocess.run([os.environ["EXAMPLE_OPERATOR"]], env=self.environment, text=True, capture_output=True,
-                                timeout=20)
+                                timeout=60)
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertEqual(len(result.stdout.splitlines()), 5)
         self.settle()
@@ -404,6 +428,7 @@ class Library(Case):
         sim = self.start_sim("--without", "di_wheel_drive")
         board = waiting.Program([os.environ["EXAMPLE_BOARD"]], env=self.environment, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
         self._started.append(board)
+        self.settle()  # it is on the bus
         self.run_tool("publish", "accel", "20ms")
         listener = self.listen("accel", "-n", "1", "--where", "accel.x>0")
         drive = self.start("drive", "5cm/s")
@@ -442,25 +467,6 @@ class Scripts(Case):
         self.assertIn(f"{path}:3:8: no LED '9'", err)
         out, _ = self.interrupt(listener)
         self.assertEqual(out, "")
-
-    def test_steps_come_at_their_times(self):
-        self.start_sim()
-        listener = self.listen("--commands", "led", "motors", "--timeout", "20s")
-        path = self.script("0s led 1 red\n5s led 2 red\n10s drive 5cm/s\n13s drive stop\n15s led 3 red\n")
-        self.run_tool("run", path, "--speed", "10")
-        self.settle()
-        out, _ = self.interrupt(listener)
-        frames = self.objects(out)
-        start = int(frames[0]["time_ns"])
-        at = {frame["topic"]: (int(frame["time_ns"]) - start) / 1e9 for frame in frames if frame["topic"] != "motors"}
-        self.assertAlmostEqual(at["led_2"], 0.5, delta=0.1)
-        self.assertAlmostEqual(at["led_3"], 1.5, delta=0.1)
-        motors = [frame["data"] for frame in frames if frame["topic"] == "motors"]
-        # Repeated at 100 and 200 ms; a machine under load may be too late for one, and for the stop, on which a third
-        # repeat falls.
-        self.assertIn(motors.count("50C3000000000000"), (2, 3, 4))
-        self.assertEqual(motors[-1], "0000000000000000")
-        self.assertEqual(motors.count("0000000000000000"), 1)
 
     def test_dry_run(self):
         out, _ = self.run_tool("run", os.path.join(SOURCE, "examples", "standalone.script"), "--dry-run")

@@ -110,7 +110,7 @@ class Played(Case):
             tool = self.start("calibrate", "AVR", "--scan", "200ms")
             waiting.until(lambda: self.avr.turning_until is not None, "the turn")
             tool.send_signal(number)
-            tool.communicate(timeout=20)
+            tool.communicate(timeout=60)
             self.assertEqual(tool.returncode, 128 + number)
             self.assertIsNone(self.avr.turning_until)
 
@@ -120,7 +120,7 @@ class Played(Case):
         waiting.until(lambda: self.avr.turning_until is not None, "the turn")
         self.avr.turning_until = None
         self.central.drop(self.avr)
-        _, err = tool.communicate(timeout=20)
+        _, err = tool.communicate(timeout=60)
         self.assertEqual(tool.returncode, 1)
         self.assertIn("AVR is lost: its link is gone", err)
 

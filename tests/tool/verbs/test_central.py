@@ -38,7 +38,7 @@ class Robot:
             except BlockingIOError:
                 time.sleep(0.01)
 
-    def hear(self, until=None, limit=5):
+    def hear(self, until=None, limit=60):
         give_up = time.monotonic() + limit
         while time.monotonic() < give_up:
             try:
@@ -67,6 +67,7 @@ class Talk:
         self.process = waiting.Program([AMIROCTL, "central", *arguments], env=case.environment, text=True,
                                        stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                                        errors="replace", bufsize=1, **options)
+        case.centrals = (*case.centrals, self.process)
         case.addCleanup(self.close)
         self.said = ""
         self.news = threading.Condition()
@@ -86,7 +87,7 @@ class Talk:
         self.process.stdin.write(text)
         self.process.stdin.flush()
 
-    def wait_for(self, text, limit=10):
+    def wait_for(self, text, limit=60):
         with self.news:
             if not self.news.wait_for(lambda: text in self.said, limit):
                 raise AssertionError(f"{text!r} does not come; there is {self.said[-1000:]!r}")
@@ -99,7 +100,7 @@ class Talk:
             self.process.send_signal(number)
         got = self.process.wait(timeout=60)
         error = self.process.stderr.read()
-        self.reader.join(timeout=5)
+        self.reader.join(timeout=60)
         if got != code:
             raise AssertionError(f"exit code {got}: {error}")
         return error
@@ -108,7 +109,7 @@ class Talk:
         if self.process.poll() is None:
             self.process.kill()
         self.process.wait()
-        self.reader.join(timeout=5)
+        self.reader.join(timeout=60)
         for stream in (self.process.stdin, self.process.stdout, self.process.stderr):
             try:
                 stream.close()
@@ -117,6 +118,11 @@ class Talk:
 
 
 class OnSerialLines(Case):
+    centrals = ()
+
+    def programs(self):
+        return (*super().programs(), *self.centrals)
+
     def robot(self):
         robot = Robot()
         self.addCleanup(robot.unplug)
@@ -216,11 +222,11 @@ class OnSerialLines(Case):
         self.assertNotIn("AVR", talk.said)
         robot = self.robot()
         os.symlink(robot.path, link)
-        give_up = time.monotonic() + 5
-        while "0:020000000000:AVR" not in talk.said and time.monotonic() < give_up:
+
+        def listed():
             talk.type("list\n")
-            time.sleep(0.1)
-        self.assertIn("0:020000000000:AVR", talk.said)
+            return "0:020000000000:AVR" in talk.said
+        waiting.until(listed, "it is listed", 60)
         self.assertIn(f"no {link} yet; AVR is looked for", talk.end())
 
     def test_garbage_and_all_bytes(self):
@@ -248,7 +254,7 @@ class OnSerialLines(Case):
             robot.say("x" * 10_000)
             waiting.until(lambda sent=sent: stream().count("x") >= sent, "what was sent so far")
         robot.say("end\n")
-        talk.wait_for("end\n", 30)
+        talk.wait_for("end\n")
         self.assertEqual(stream().replace("[0]:AVR:", ""), "x" * 100_000 + "end\n")
         self.assertLessEqual(max(len(part) for part in stream().split("[0]:AVR:")), 20)
         talk.end()
@@ -291,7 +297,7 @@ class OnSerialLines(Case):
         talk.wait_for("connected 0\n")
         talk.type("{U,90,50}\n" * 20_000)
         talk.type("*list\n")  # and yet it obeys
-        talk.wait_for("end of list\n", 20)
+        talk.wait_for("end of list\n")
         error = talk.end()
         self.assertRegex(error, r"\d+ bytes for links that were gone or full")
 
@@ -338,7 +344,7 @@ class OnSerialLines(Case):
     def test_a_full_disk(self):
         with open("/dev/full", "wb") as full:
             process = subprocess.run([AMIROCTL, "central", "--robot", "AVR=/dev/null"], env=self.environment,
-                                     input=b"start\n", stdout=full, stderr=subprocess.PIPE, timeout=20, check=False)
+                                     input=b"start\n", stdout=full, stderr=subprocess.PIPE, timeout=60, check=False)
         self.assertEqual(process.returncode, 1)
         self.assertIn(b"cannot write to the standard output: No space left", process.stderr)
 
@@ -492,7 +498,7 @@ class OnAPseudoTerminal(Case):
             pass
 
     @staticmethod
-    def read(line, until, limit=5):
+    def read(line, until, limit=60):
         text = b""
         give_up = time.monotonic() + limit
         while until not in text and time.monotonic() < give_up:
@@ -548,7 +554,7 @@ class OnAPseudoTerminal(Case):
     def test_pyserial(self):
         program = """if True:
             import serial, sys
-            with serial.Serial(sys.argv[1], 38400, timeout=5) as line:
+            with serial.Serial(sys.argv[1], 38400, timeout=60) as line:
                 line.write(b"start\\nlist\\n")
                 sys.stdout.buffer.write(line.read_until(b"end of list\\n"))
         """
@@ -559,7 +565,7 @@ class OnAPseudoTerminal(Case):
             self.skipTest("no pyserial here")
         self.begin()
         for _ in range(2):
-            result = subprocess.run([python, "-c", program, self.link], capture_output=True, timeout=20, check=True)
+            result = subprocess.run([python, "-c", program, self.link], capture_output=True, timeout=90, check=True)
             self.assertTrue(result.stdout.endswith(b"0:020000000000:AVR\nend of list\n"), result.stdout)
 
 

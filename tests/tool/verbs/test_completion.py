@@ -7,6 +7,7 @@ import unittest
 
 import harness
 import operate_cases
+from realtime import RealTime
 
 OTHER = os.path.join(harness.SOURCE, "examples", "other-robot", "topics.json")
 
@@ -98,6 +99,9 @@ class Words(harness.Case):
 
 
 class Requests(operate_cases.Operating, Words):
+    # An operator that does not answer within 300 ms is left out.
+    had_time = RealTime.had_time
+
     def test_where_a_request_leads(self):
         """Asked of the operator that runs, of the bus that is named or of any; there may be none."""
         self.start_sim()

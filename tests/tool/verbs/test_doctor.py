@@ -8,7 +8,7 @@ import time
 
 from harness import Case, main
 
-QUICK = ("--listen", "200ms", "--patience", "300ms")
+QUICK = ("--listen", "200ms", "--patience", "2s")  # boards that all answer are not waited for
 
 
 class Doctor(Case):
@@ -22,7 +22,7 @@ class Doctor(Case):
     def test_it_listens_for_a_second(self):
         self.start_sim()
         begin = time.monotonic()
-        self.run_tool("doctor", "--patience", "300ms")
+        self.run_tool("doctor", "--patience", "2s")
         self.assertGreaterEqual(time.monotonic() - begin, 1)
         self.assertRegex(self.run_tool("doctor", "--help")[0], "--listen T=1s +.*\n +--patience T=500ms ")
 
@@ -99,7 +99,7 @@ class Doctor(Case):
 
     def test_strangers_on_the_bus(self):
         self.start_sim()
-        doctor = self.start("doctor", "--json", "--listen", "3s")
+        doctor = self.start("doctor", "--json", "--listen", "10s", "--patience", "5s")  # while two programs start
         self.assertIn("bus: sim", doctor.stderr.readline())
         self.settle()
         self.run_tool("send", "7FF#00")
@@ -189,7 +189,7 @@ class Doctor(Case):
         for number in (1, 2, 4):
             sender = self.start("--spec", many, "set", f"M{number}", "--every", "2ms")
             self.assertIn("bus: sim", sender.stderr.readline())
-        for _ in range(5):  # on a busy machine one of them may not run for so long
+        for _ in range(30):  # on a busy machine one of them may not run for so long
             report = json.loads(self.run_tool("--spec", many, "doctor", "--json", "--listen", "300ms", code=1)[0])
             if self.what(report) == [("warning", "A", "of 6 messages due in 300ms nothing came of M3, M5, M6")]:
                 return
@@ -203,6 +203,7 @@ class Doctor(Case):
         self.start_sim("--without", "di_wheel_drive,power_management,light_ring")
         sender = self.start("--spec", spec, "set", "Long", "--every", "10ms")
         self.assertIn("bus: sim", sender.stderr.readline())
+        self.run_tool("--spec", spec, "listen", "Long", "-n", "1", "--timeout", "60s", timeout=90)  # it sends
         out, _ = self.run_tool("--spec", spec, "doctor", "--listen", "500ms", "--json")
         self.assertEqual(self.what(json.loads(out)), [])
 

@@ -6,9 +6,13 @@ import time
 from harness import Case, main, waiting
 from played_central import Central, Robot
 from played_dongles import BaseFirmware, Silent, Thesis
+from realtime import RealTime
 
 
 class Dongles(Case):
+    # Each answer has its time, in which the tool, the terminal and the dongle that is played are late one after the other.
+    had_time = RealTime.had_time
+
     def play(self, kind, *names):
         self.robots = [Robot(name, pose=(0.4 + 0.3 * i, 0.5, 0.0)) for i, name in enumerate(names or ["AVR"])]
         self.dongle = kind(self.folder, self.robots, link="dongle")
@@ -18,7 +22,7 @@ class Dongles(Case):
     def tool(self, verb, *arguments, code=0):
         for _ in range(5):  # a dongle that is played on a busy machine may say its list too late to be heard
             tool = self.start(verb, *arguments, "--central", self.dongle.path, "--scan", "200ms")
-            out, err = tool.communicate(timeout=30)
+            out, err = tool.communicate(timeout=60)
             if "the central finds no robot" not in err:
                 break
         dongle = self.dongle

@@ -8,6 +8,7 @@ import time
 
 from harness import Case, main, waiting
 from played_adapter import WithAdapter
+from realtime import RealTime
 
 FORWARDS = "201#50C3000000000000"
 BACKWARDS = "-5cm/s"
@@ -17,6 +18,9 @@ OTHER = "another program commands motors: " + FORWARDS
 
 
 class Drive(Case):
+    # Who begins listens for 150 ms to others, which repeat what they command each 100 ms.
+    had_time = RealTime.had_time
+
     def driving(self, *arguments):
         """A drive that goes on: one that begins now could have heard it."""
         listener = self.listen("motors", "--timeout", "20s")
@@ -56,7 +60,7 @@ class TwoCommanders(Drive):
     def test_force_drives_all_the_same_and_both_sides_say_so(self):
         sim = self.start_sim()
         first = self.driving()
-        doctor = self.start("doctor", "--json", "--listen", "1s")
+        doctor = self.start("doctor", "--json", "--listen", "5s")  # until the second one has begun, too
         self.assertIn("bus: sim", doctor.stderr.readline())
         _, second = self.run_tool("drive", BACKWARDS, "--for", "1200ms", "--force")
         out, _ = doctor.communicate(timeout=60)
@@ -77,7 +81,7 @@ class TwoCommanders(Drive):
     def test_one_that_comes_later_is_reported_by_a_script(self):
         self.start_sim()
         listener = self.listen("motors", "--timeout", "20s")
-        run = self.start("run", self.script("0s drive 5cm/s\n1s stop\n"))
+        run = self.start("run", self.script("0s drive 5cm/s\n5s stop\n"))  # late enough for another program to begin
         self.drives(listener)
         self.run_tool("set", "motors", "x=-1cm/s")
         _, err = run.communicate(timeout=60)
@@ -130,7 +134,7 @@ class TwoCommanders(Drive):
         run = self.start("run", self.script("0s set motors x=5cm/s\n60s drive 5cm/s\n"))
         self.assertIn("50C3000000000000", listener.stdout.readline())
         self.run_tool("stop")
-        _, err = run.communicate(timeout=30)
+        _, err = run.communicate(timeout=60)
         self.assertEqual(run.returncode, 1)
         self.assertIn(STOPPED + "run", err)
 
@@ -276,7 +280,7 @@ class Interrupted(Drive):
         run.send_signal(signal.SIGSTOP)
         time.sleep(2)  # longer than a script may be stopped
         run.send_signal(signal.SIGCONT)
-        _, err = run.communicate(timeout=20)
+        _, err = run.communicate(timeout=60)
         self.assertEqual(run.returncode, 1, err)
         self.assertRegex(err, r"run: this program did not run for \S+, so no further command is sent\n.*\ntravel was ended\n")
         line = json.loads(listener.stdout.readline())
@@ -309,9 +313,9 @@ class LateSteps(Drive):
     def test_a_slow_bus_makes_steps_late_and_no_more(self):
         """The queue takes 64 frames, and the bus some 24 a second: the last steps wait for more than a second."""
         self.start_sim("--bitrate", "2000")
-        listener = self.listen("--commands", "-n", "100", "--timeout", "30s")
+        listener = self.listen("--commands", "-n", "100", "--timeout", "60s")
         self.run_tool("run", self.script("".join(f"0s led 1 {i},0,0\n" for i in range(100))))
-        out, _ = listener.communicate(timeout=30)
+        out, _ = listener.communicate(timeout=60)
         self.assertEqual(len(self.objects(out)), 100)
 
     def test_a_script_that_drives_and_stood_still_ends_with_zero(self):

@@ -11,10 +11,14 @@ import time
 
 from harness import AMIROCTL, Case, main, waiting
 from played_central import Central, Robot
+from realtime import RealTime
 
 
 class Line(Case):
-    """With a central and two robots at the place where the verbs look for one."""
+    """With a central and two robots at the place where the verbs look for one. What a robot has not heard is said again after a
+    moment, in which the tool, the terminal and the central that is played are late one after the other."""
+
+    had_time = RealTime.had_time
 
     def setUp(self):
         super().setUp()
@@ -30,7 +34,7 @@ class Line(Case):
 
 class Robots(Line):
     def test_all_that_are_there(self):
-        out, _ = self.tool("robots", "--json", "--listen", "1s")
+        out, _ = self.tool("robots", "--json", "--listen", "3s")
         robots = [json.loads(line) for line in out.splitlines()]
         self.assertEqual([robot["robot"] for robot in robots], ["AVR", "Arduino"])
         for robot in robots:
@@ -69,7 +73,7 @@ class Robots(Line):
         os.write(port, b"conn 0\n{U,9")
         waiting.until(lambda: self.central.target is not None, "data mode")
         os.close(port)
-        out, _ = self.tool("robots", "--listen", "1s")
+        out, _ = self.tool("robots", "--listen", "3s")
         self.assertRegex(out, r"AVR .* idle")
         self.assertEqual([line for line in self.avr.heard if line not in ("{S,CON}", "{S,WHO}")], [])
 
@@ -81,7 +85,7 @@ class Robots(Line):
 
     def test_a_robot_that_cannot_be_reached_is_told_and_the_others_are_shown(self):
         self.arduino.reachable = False
-        out, err = self.tool("robots")
+        out, err = self.tool("robots", "--listen", "3s")
         self.assertEqual(err, "robots: the central refuses Arduino: no link to 1\n")
         self.assertRegex(out, r"AVR .* idle")
         self.assertRegex(out, r"Arduino .* no link")
@@ -197,8 +201,8 @@ class Goto(Line):
 
     def test_does_not_arrive_in_time_and_is_stopped(self):
         self.avr.speed = 1
-        _, err = self.tool("goto", "AVR", "0", "50", "--timeout", "1s", code=1)
-        self.assertIn("has not arrived after 1s", err)
+        _, err = self.tool("goto", "AVR", "0", "50", "--timeout", "3s", code=1)  # time enough to be heard
+        self.assertIn("has not arrived after 3s", err)
         self.assertIn("--timeout", err)
         waiting.until(lambda: self.avr.heard[-1] == "{U,0,0}", "the robot is stopped")
 

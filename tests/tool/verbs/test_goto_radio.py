@@ -76,7 +76,7 @@ class Radio(Case):
 
         def x():
             return self.place("100ms")["pose"]["x_cm"]
-        waiting.until(lambda: x() > 5, "it drives")
+        waiting.until(lambda: x() > 5, "it drives", 60)
         before = x()
         (goto if victim == "goto" else owner).send_signal(number)
         if victim == "central":

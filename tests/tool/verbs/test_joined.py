@@ -99,7 +99,7 @@ class TogetherOnALine(Joined):
         self.assertEqual(glob.glob(os.path.join(self.folder, "ocm", "line-*.sock")), [])
 
     def test_programs_that_start_together(self):
-        tools = [self.start("robots", "--scan", "200ms", "--listen", "500ms") for _ in range(6)]
+        tools = [self.start("robots", "--scan", "200ms", "--listen", "3s") for _ in range(6)]
         for tool in tools:
             out, _ = self.ended(tool, 0)
             self.assertRegex(out, r"AVR .* idle")
@@ -233,8 +233,8 @@ class WhoStopsWhat(Joined):
 
 class TheOwnerEnds(Joined):
     def test_done_it_serves_the_others_until_they_are(self):
-        owner = self.own("robots", "--listen", "1s")
-        self.avr.speed = 25
+        owner = self.own("robots", "--listen", "4s")  # until goto has joined; its way takes longer
+        self.avr.speed = 8
         tool = self.start("goto", "AVR", "90", "50")
         out, _ = self.ended(tool, 0)
         self.assertEqual(out, "AVR: x 0 cm, y 50 cm, heading 90 deg\n")
@@ -243,7 +243,7 @@ class TheOwnerEnds(Joined):
         self.assertRegex(err, r"robots: done; it serves the central's line until goto \(process \d+\) has ended")
 
     def test_no_more_programs_join_one_that_is_done(self):
-        owner = self.own("robots", "--listen", "1s")
+        owner = self.own("robots", "--listen", "4s")  # until goto has joined
         tool = self.drive()
         waiting.until(lambda: "done; it serves" in owner.stderr.readline(), "the owner is done")
         late = self.start("robots", "--listen", "100ms", "--scan", "100ms")
@@ -502,7 +502,7 @@ class BesideAMap(Case):
         super().setUp()
         self.start_sim("--robots", "2", "--world", "labyrinth")
         self.map = self.start("map", self.path("room.pgm"), "--world", "labyrinth")
-        waiting.until(lambda: self.moving() == {"AVR", "Arduino"}, "both explore", 60)
+        waiting.until(lambda: self.moving() == {"AVR", "Arduino"}, "both explore", 120)
 
     def path(self, name):
         return os.path.join(self.folder, name)

@@ -166,10 +166,11 @@ class Line(Case):
         for piece in (b"[0]:AVR:{S,I", b"DL}", b"{S,ID"):
             process.stdin.write(piece)
             process.stdin.flush()
-            shown = select.select([process.stdout], [], [], 10 if piece == b"DL}" else 0.2)[0]
+            shown = select.select([process.stdout], [], [], 60 if piece == b"DL}" else 0.2)[0]
             self.assertEqual(bool(shown), piece == b"DL}")
             if shown:
                 self.assertEqual(self.objects(process.stdout.readline().decode()), [IDLE])
+        self.settle()  # it has read all of it
         _, err = self.interrupt(process)
         self.assertEqual(process.returncode, 130)
         self.assertIn(b"1 whole sentence, 1 damaged (1 unclosed)", err)
