@@ -56,7 +56,7 @@ class Robot:
     def end(self):
         self.process.stdin.close()
         self.process.stdout.close()
-        assert self.process.wait(10) == 0
+        assert self.process.wait(60) == 0
 
 
 class Case(unittest.TestCase):

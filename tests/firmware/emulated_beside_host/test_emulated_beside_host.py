@@ -56,7 +56,7 @@ class Robots(Case):
     def bus(self, name):
         return f"sim:{self.folder}/{name}.sock"
 
-    def until(self, condition, seconds=20):
+    def until(self, condition, seconds=90):
         end = time.monotonic() + seconds
         while not condition():
             self.assertLess(time.monotonic(), end, "it did not come about in time")
@@ -67,9 +67,9 @@ class Robots(Case):
 
     def asked(self, name, topic, priority="medium"):
         """The frames that one request brings, as (identifier, data); None when there is no answer."""
-        listener = self.start("--bus", self.bus(name), "listen", "--json", "--timeout", "3s", topic)
+        listener = self.start("--bus", self.bus(name), "listen", "--json", "--timeout", "6s", topic)
         self.assertIn("bus: sim", listener.stderr.readline())
-        time.sleep(0.05)
+        waiting.until_asleep(listener.pid)  # it is subscribed
         self.tool(name, "once", topic, "--priority", priority, "--no-confirm")
         frames, count = [], self.frames_of(topic)
         for line in listener.stdout:
@@ -78,7 +78,7 @@ class Robots(Case):
             if len(frames) == count:
                 break
         listener.send_signal(signal.SIGINT)
-        listener.communicate(timeout=10)
+        listener.communicate(timeout=60)
         return frames if len(frames) == count else None
 
     def record(self, name, *arguments):
@@ -90,8 +90,13 @@ class Robots(Case):
                                        stderr=subprocess.PIPE, text=True)
         self._started.append(listener)
         self.assertIn("bus: sim", listener.stderr.readline())
-        time.sleep(0.1)
+        waiting.until_asleep(listener.pid, looks=10)  # it is subscribed
         return listener, path
+
+    def so_far(self, path):
+        """What has been recorded in a file that is still written; its last line may be a part."""
+        with open(path, encoding="utf-8") as file:
+            return self.objects(file.read().rpartition("\n")[0])
 
     @staticmethod
     def count(path, frame):
@@ -145,9 +150,10 @@ class Frozen(Robots):
         heard = {}
         for name in self.sims:
             recording = self.record(name)
-            for frame in refused:
+            for number, frame in enumerate(refused, 1):
                 self.tool(name, "send", frame)
-                time.sleep(0.1)  # one refusal, one frame
+                # One refusal, one frame; two that a board hears at once may be told in one.
+                self.until(lambda: sum(int(e["id"], 16) & 0x400 != 0 for e in self.so_far(recording[1])) >= number)
             self.tool(name, "once", "gyro")  # and all else goes on
             time.sleep(0.3)
             # Topic, reason and how many were refused; not how often an emulated part had nothing to say, which depends on
@@ -162,9 +168,11 @@ class Frozen(Robots):
         heard = {}
         for name in self.sims:
             recording = self.record(name)
-            for frame in ("205#01", "205#00", "204#02", "208#01F40100", "108#01C80000", "208#00", "205#01840302"):
-                self.tool(name, "send", frame)
-                time.sleep(0.12)
+            # By one program: how long another takes to start is how long a stream runs.
+            frames = ("205#01", "205#00", "204#02", "208#01F40100", "108#01C80000", "208#00", "205#01840302")
+            self.run_tool("--bus", self.bus(name), "send", "--stdin", "--timed",
+                          stdin="".join(f"({0.12 * turn:.6f}) can0 {frame}\n" for turn, frame in enumerate(frames)))
+            time.sleep(0.12)
             self.tool(name, "send", "205#00")
             time.sleep(1)
             ends = time.time_ns()
@@ -233,11 +241,11 @@ class Moving(Robots):
 
     def nearest(self, name):
         """What the ring's sensors say of the nearest thing, m."""
-        listener = self.start("--bus", self.bus(name), "listen", "ring", "--json", "--count", "8", "--timeout", "10s")
+        listener = self.start("--bus", self.bus(name), "listen", "ring", "--json", "--count", "8", "--timeout", "30s")
         self.assertIn("bus: sim", listener.stderr.readline())
-        time.sleep(0.05)
+        waiting.until_asleep(listener.pid)  # it is subscribed
         self.tool(name, "once", "ring")
-        out, err = listener.communicate(timeout=20)
+        out, err = listener.communicate(timeout=60)
         self.assertEqual(listener.returncode, 0, err)
         return min(event["fields"]["distance"] for event in self.objects(out) if event["fields"].get("distance") is not None)
 
@@ -249,7 +257,7 @@ class Moving(Robots):
         for name in self.sims:
             runs[name] = self.start("--bus", self.bus(name), "run", str(ROOT / "examples" / "standalone.script"))
         for name, run in runs.items():
-            run.communicate(timeout=60)
+            run.communicate(timeout=120)
             self.assertEqual(run.returncode, 0)
         time.sleep(0.5)
         output = {name: self.recorded(recording) for name, recording in recordings.items()}
@@ -276,7 +284,7 @@ class Moving(Robots):
         for topic, period in (("accelerometer", 0.5), ("magnetometer", 0.8), ("gyroscope", 5)):
             times = [sample[-1][2] for sample in samples["qemu"][topic]]
             mean = (times[-1] - times[0]) / (len(times) - 1)
-            self.assertAlmostEqual(mean, period, delta=0.01, msg=topic)
+            self.assertAlmostEqual(mean, period, delta=0.01 + self.spare.late / (len(times) - 1), msg=topic)  # of the first or the last one
         texts = self.summaries()
         self.assertNotIn("against a data sheet", texts["qemu"])
 
@@ -302,7 +310,11 @@ class Moving(Robots):
         recording = self.record("qemu", "odometry")
         self.tool("qemu", "publish", "odometry", "100ms")
         self.tool("qemu", "set", "motors", "x=0.2m/s")  # once: it is not repeated
-        time.sleep(2)
+
+        def rests():
+            seen = [e["fields"]["x"] for e in self.so_far(recording[1]) if e["frame"] == "velocity"]
+            return len(seen) > 4 and max(seen) > 0.15 and not any(seen[-4:])
+        self.until(rests)
         events = self.recorded(recording)
         speeds = [e["fields"]["x"] for e in events if e["frame"] == "velocity"]
         path = [e["fields"]["x"] for e in events if e["frame"] == "pose"]
@@ -319,7 +331,7 @@ class Moving(Robots):
                                 check=True).stdout.split()
         self.assertEqual(len(boards), 3)
         os.kill(int(boards[2]), signal.SIGKILL)
-        _, err = self.sims["qemu"].communicate(timeout=10)
+        _, err = self.sims["qemu"].communicate(timeout=60)
         self.assertEqual(self.sims["qemu"].returncode, 1)
         self.assertIn("light_ring: QEMU was ended by signal Killed", err)
         self.assertEqual(subprocess.run(["pgrep", "-P", str(self.sims["qemu"].pid)], check=False).returncode, 1)

@@ -125,7 +125,7 @@ class Process:
     def send_signal(self, number):
         self.process.send_signal(number)
 
-    def wait(self, limit=20):
+    def wait(self, limit=90):
         """The exit code; 128 + signal when a signal ended it."""
         try:
             code = self.process.wait(limit)
@@ -210,7 +210,7 @@ class Adapter:
     def report(self, line):
         os.write(self.master, line.encode() + b'\r')
 
-    def sent(self, quiet=0.3, last=None):
+    def sent(self, quiet=2.0, last=None):
         """What the host has sent, until nothing came for a while."""
         data = b''
         while select.select([self.master], [], [], quiet)[0]:

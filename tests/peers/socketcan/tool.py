@@ -432,7 +432,7 @@ def _(context):
 @check('error frames of an adapter are put into words')
 def _(context):
     with Adapter() as adapter:
-        with Process(context.amiroctl, '--bus', adapter.name, 'listen', '--json', '-n', '3', '--timeout', '10s',
+        with Process(context.amiroctl, '--bus', adapter.name, 'listen', '--json', '-n', '3', '--timeout', '60s',
                      listens_on=adapter.name) as listen:
             for line in ('sp200100', 'sb256000', 'e1a'):
                 adapter.report(line)
@@ -485,7 +485,7 @@ def _(context):
             for frame in sent:
                 amiroctl(context, '--bus', 'vcan9', 'send', frame)
             amiroctl(context, '--bus', 'vcan9', '--spec', '/tmp/fd.dbc', 'set', 'Objects', 'count=7', 'last=9')
-            theirs = [bus.recv(5) for _ in range(len(sent) + 1)]
+            theirs = [bus.recv(60) for _ in range(len(sent) + 1)]
             log.finish()
             shown = re.findall(r'^\(\S+\) \S+ (\S+)', log.stdout, re.M)
         # candump 2020.11 writes the flags as the kernel has them, with FDF (4).

@@ -31,7 +31,7 @@ class Foxglove(harness.Case):
         self.settle()
         for low in (1, 2, 3):
             self.run_tool("send", f"608#{low:02X}0000000000")
-        seen = json.loads(client.communicate(timeout=30)[0])
+        seen = json.loads(client.communicate(timeout=90)[0])
         self.assertEqual([message["fields"] for message in seen["messages"]], [{"x": x, "y": 0, "z": 0} for x in (0.0175, 0.035, 0.0525)])
         self.assertEqual(seen["info"]["capabilities"], [])
         self.assertEqual(seen["statuses"], [])
@@ -58,7 +58,7 @@ class Foxglove(harness.Case):
         path = os.path.join(browser.node_modules(), "@foxglove", "schemas", "dist", "jsonschema", "index.js")
         theirs = json.loads(subprocess.run(["node", "-p", f"JSON.stringify(require({json.dumps(path)}))"], capture_output=True, text=True, check=True).stdout)
         for topic, name in (("/odometry/pose", "PoseInFrame"), ("/odometry/transform", "FrameTransform"), ("/proximity_ring/scan", "LaserScan")):
-            seen = json.loads(self.client(url, topic, "2").communicate(timeout=30)[0])
+            seen = json.loads(self.client(url, topic, "2").communicate(timeout=90)[0])
             schema = next(channel["schema"] for channel in seen["channels"] if channel["topic"] == topic)
             self.assertEqual(schema["title"], f"foxglove.{name}")
             self.assertEqual(self.shape(schema), self.shape(theirs[name]), name)
@@ -71,7 +71,7 @@ class Foxglove(harness.Case):
     def test_it_publishes_and_reads_parameters(self):
         self.start_sim("--frozen")
         client = self.client(self.serve("--allow-commands"), "/motors", "2", "/motors", '{"x":0.1,"z":0}')
-        seen = json.loads(client.communicate(timeout=30)[0])
+        seen = json.loads(client.communicate(timeout=90)[0])
         self.assertEqual(seen["messages"][0]["fields"], {"x": 0.1, "z": 0})
         self.assertEqual(seen["info"]["capabilities"], ["clientPublish", "parameters", "parametersSubscribe"])
         self.assertEqual(seen["parameters"]["parameters"][0]["name"], "/gyroscope/period_ms")

@@ -109,7 +109,9 @@ class Asked(WithAdapter, Operating):
         self.assertNotIn("limits", err)
         frames = [frame for _, frame in self.frames(listener)]
         self.assertEqual({x_of(frame) for frame in frames}, {20_000, 10_000, 0})
-        self.assertEqual(len([frame for frame in frames if x_of(frame) == 20_000]) in range(4, 8), True, frames)
+        limited = len([frame for frame in frames if x_of(frame) == 20_000])
+        self.assertLess(limited, 8, frames)
+        self.assertGreaterEqual(limited + self.spare.late / 0.1, 4, frames)  # one that is held up leaves out a turn
         _, err = self.interrupt(operator)
         self.assertRegex(err, "[0-9]+ set points? passed on, [0-9]+ set points? limited")
 
@@ -137,14 +139,14 @@ class Asked(WithAdapter, Operating):
 
     def test_behaviours_of_boards_need_its_leave_and_their_end_does_not(self):
         self.start_sim()
-        self.operate(document=GUARDED)
+        operator = self.operate(document=GUARDED)
         for command, topic in ((("travel", "1cm"), "travel"), (("behave", "follow", "--for", "1s"), "follow")):
             _, err = self.run_tool(*command, code=1)
             self.assertIn(f"operator halt is in driving, where {command[0]} may not command {topic}", err)
         _, err = self.run_tool("behave", "none")
         self.assertRegex(err, r"behave: operator halt \(process [0-9]+\) guards the robot")
         self.run_tool("operator", "switch", "slow")
-        self.settle()
+        self.event(operator, "switched")  # it may follow when the start is over
         out, _ = self.run_tool("travel", "5mm", "--speed", "1cm/s")
         self.assertIn("arrived", out)
 
@@ -159,7 +161,8 @@ class Asked(WithAdapter, Operating):
         values = [x_of(frame) for _, frame in frames]
         self.assertEqual(max(values), 10_000)
         for (before, a), (after, b) in zip(frames, frames[1:]):
-            self.assertLessEqual(x_of(b) - x_of(a), 20_000 * (after - before) + 1500)
+            # By the clock of the bus: of two, the first may have got there late.
+            self.assertLessEqual(x_of(b) - x_of(a), 20_000 * (after - before + self.spare.late) + 1500)
         self.assertEqual(values[-1], 0)
 
     def test_who_may_not_command_is_refused_and_rest_never_is(self):
@@ -453,7 +456,7 @@ class Asked(WithAdapter, Operating):
         for _ in range(300):
             client = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
             client.connect(path)
-            client.settimeout(5)
+            client.settimeout(60)
             if chance.random() < 0.8:
                 client.send(b"hello 1 drive")
                 self.assertEqual(client.recv(100), b"ok\nhalt")

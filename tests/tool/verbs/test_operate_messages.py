@@ -14,7 +14,7 @@ CAR = {
     "configurations": [{"name": "watching", "streams": [{"topic": "Driving"}]},
                        {"name": "alarm", "streams": [{"topic": "Driving"}]}],
     "monitors": [{"name": "fast", "when": "Driving.Speed>50km/h"},
-                 {"name": "silent", "when": {"age": "Driving", "above": "2s"}},
+                 {"name": "silent", "when": {"age": "Driving", "above": "10s"}},
                  {"name": "slow", "when": "Driving.Speed<50km/h", "for": "100ms"}],
     "transitions": [{"from": "watching", "to": "alarm", "when": "fast"}, {"from": "watching", "to": "alarm", "when": "silent"},
                     {"from": "alarm", "to": "watching", "when": "slow"}],
@@ -66,7 +66,7 @@ class OfPlainMessages(Operating):
         self.assertEqual(event["conditions"], ["not Driving.Speed>50km/h"])
         _, err = self.interrupt(car)  # silence
         self.assertRegex(err, r"set: operator car \(process [0-9]+\) watches the bus; messages do not go through it\n")
-        self.assertEqual(self.event(operator, "switched")["conditions"], ["age of Driving above 2s"])
+        self.assertEqual(self.event(operator, "switched")["conditions"], ["age of Driving above 10s"])
         _, err = self.interrupt(operator)
         self.assertEqual(operator.returncode, 130)
         self.assertIn("3 changes, 0 frames sent", err)
@@ -77,7 +77,7 @@ class OfPlainMessages(Operating):
 def of_field(field, low, high):
     """CAR with this field above `high` as the event, and below `low` as its end."""
     text = json.dumps(CAR).replace("Driving.Speed>50km/h", f"{field}>{high}").replace("Driving.Speed<50km/h", f"{field}<{low}")
-    text = text.replace('"2s"', '"60s"').replace('"Driving"', json.dumps(field.split(".")[0]))
+    text = text.replace('"10s"', '"60s"').replace('"Driving"', json.dumps(field.split(".")[0]))
     return json.loads(text) | {"settle": "400ms"}
 
 

@@ -250,7 +250,7 @@ class Plot(Case):
         self.start_sim()
         self.run_tool("publish", "gyro", "20ms")
         picture = os.path.join(self.folder, "live.svg")
-        self.run_tool("plot", "live", "gyro.*", "--duration", "500ms", "-o", picture)
+        self.run_tool("plot", "live", "gyro.*", "--duration", "3s", "-o", picture)
         with open(picture, encoding="utf-8") as file:
             texts = self.texts(file.read())
         self.assertIn("AMiRo: sim", texts)

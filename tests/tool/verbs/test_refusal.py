@@ -38,7 +38,7 @@ class OnARobotThatRefuses(WithAdapter, Case):
                 (("drive", "5cm/s", "--once"), "drive: di_wheel_drive refuses motors: bad_length"),
                 (("drive", "stop"), "drive: di_wheel_drive refuses motors: bad_length"),
                 (("drive", "5cm/s"), "drive: di_wheel_drive refuses motors: " + no_length + "motors`")):
-            out, err = self.run_tool(*bus, *verb, code=1, timeout=10)
+            out, err = self.run_tool(*bus, *verb, code=1, timeout=60)
             self.assertRegex(err, "amiroctl: " + what, verb)
             self.assertEqual(out, "")
             if "--wait" in verb:
@@ -89,7 +89,7 @@ class OnARobotThatRefuses(WithAdapter, Case):
 
     def test_a_drive_that_is_refused_ends_and_leaves_rest_behind(self):
         bus = self.robot({FORWARDS: [refusal(0x01, BAD_LENGTH)]})
-        _, err = self.run_tool(*bus, "drive", "5cm/s", "--for", "60s", code=1, timeout=20)
+        _, err = self.run_tool(*bus, "drive", "5cm/s", "--for", "60s", code=1, timeout=50)
         self.assertEqual(err.count("refuses"), 1)
         self.assertEqual(self.played.frames[-1], REST)
         self.assertLess(len(self.played.frames), 20)
@@ -109,7 +109,7 @@ class OnARobotThatRefuses(WithAdapter, Case):
 
     def test_a_script_whose_drive_is_refused_ends(self):
         bus = self.robot({FORWARDS: [refusal(0x01, BAD_LENGTH)]})
-        _, err = self.run_tool(*bus, "run", self.script("0s drive 5cm/s\n60s led 1 red\n"), code=1, timeout=20)
+        _, err = self.run_tool(*bus, "run", self.script("0s drive 5cm/s\n60s led 1 red\n"), code=1, timeout=50)
         self.assertIn("run: di_wheel_drive refuses motors: bad_length", err)
         self.assertEqual(self.played.frames[-1], REST)
 

@@ -106,7 +106,7 @@ class Simulated(Case):
         """In the README's order: the first verb hears the handshakes, and the links stay up."""
         self.sim("--robots", "2", "--world", "labyrinth", "--speed", "10")
         for attempt in range(2):
-            out, _ = self.run_tool("robots", "--json", "--listen", "500ms")
+            out, _ = self.run_tool("robots", "--json", "--listen", "2s")
             for line in out.splitlines():
                 body = json.loads(line)["body"]
                 self.assertIsNotNone(body, f"{attempt}: {line}")

@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import signal
 
 from harness import Case, SOURCE, main
@@ -27,7 +28,7 @@ class SimMessages(Case):
                                   (("--filter", "100:7FF"), {"Engine"}), (("--filter", "100:7FF", "Wheels"), {"Engine", "Wheels"}),
                                   (("--where", "Engine.Speed>=0"), {"Engine"}),
                                   (("Wheels", "--where", "Engine.Speed>=0"), {"Wheels"})):
-            out, err = self.run_tool("listen", "--spec", car, "--bus", "sim", "--json", "--timeout", "500ms", *arguments)
+            out, err = self.run_tool("listen", "--spec", car, "--bus", "sim", "--json", "-n", "50", "--timeout", "25s", *arguments)
             self.assertEqual({event["topic"] for event in self.objects(out)}, topics, arguments)
             self.assertNotIn("unknown", err)
 
@@ -48,7 +49,8 @@ class SimMessages(Case):
         seen = {t["topic"]: t for t in json.loads(out)["buses"][0]["topics"]}
         for name, period in (("Fast", 10e6), ("Pages", 50e6), ("Group", 20e6)):
             self.assertEqual(seen[name]["period_ns"], period)
-            self.assertAlmostEqual(seen[name]["mean_ns"], period, delta=period / 50)
+            late = self.spare.late * 1e9  # of the first or the last one
+            self.assertAlmostEqual(seen[name]["mean_ns"], period, delta=period / 50 + late / (seen[name]["count"] - 1))
             # A machine that pauses makes a gap, and all comes late; that none is left out is tests/sim/messages's to show.
             self.assertLessEqual(seen[name]["missing"], 3 if name == "Fast" else 1)
         _, err = self.interrupt(sim)
@@ -63,11 +65,16 @@ class SimMessages(Case):
         for row in rows:
             self.assertEqual(row["fd"], {"brs": row["topic"] == "Long", "esi": False})  # Odd: CANFD_BRS is 0
             self.assertEqual(len(row["data"]), 64 if row["topic"] == "Long" else 24)
-        listener = self.listen("--spec", SPEC, "--timeout", "10s")
-        self.run_tool("set", "--spec", SPEC, "--bus", "sim", "Odd", "End=77", "--every", "20ms", "--for", "200ms")
-        out, _ = self.interrupt(listener)
-        ours = [row for row in self.objects(out) if row.get("fields", {}).get("End") == 77]
-        self.assertGreaterEqual(len(ours), 9)
+        listener = self.listen("--spec", SPEC, "--timeout", "60s")
+        _, err = self.run_tool("set", "--spec", SPEC, "--bus", "sim", "Odd", "End=77", "--every", "20ms", "--for", "200ms")
+        # On a busy machine some turns are left out, and said.
+        sent = 10 - sum(int(count) for count in re.findall(r"(\d+) frames? w(?:as|ere) not sent", err))
+        ours = []
+        while len(ours) < min(9, sent):  # what was sent last is on its way to the listener
+            row = json.loads(listener.stdout.readline())
+            ours += [row] if row.get("fields", {}).get("End") == 77 else []
+        self.assertGreater(sent, 0)
+        self.interrupt(listener)
         self.assertEqual(ours[0]["data"], "00" * 9 + "4D" + "0000")
         self.assertEqual(ours[0]["fd"], {"brs": False, "esi": False})
 

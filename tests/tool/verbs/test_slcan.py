@@ -202,7 +202,7 @@ bus = can.Bus(interface='slcan', channel=sys.argv[1], bitrate=500000, sleep_afte
 try:
     for extended, number in ((False, 0x123), (True, 0x1F334455)):
         bus.send(can.Message(arbitration_id=number, is_extended_id=extended, data=[1, 2]))
-        answer = bus.recv(5)
+        answer = bus.recv(30)
         print('%X#%s' % (answer.arbitration_id, bytes(answer.data).hex().upper()))
 finally:
     bus.shutdown()
@@ -218,13 +218,13 @@ finally:
     def test_the_same_adapter_serves_both(self):
         adapter = Adapter(script={"123#0102": ["t32121122\r"], "1F334455#0102": ["T1F33445621122\r"]})
         self.addCleanup(lambda: adapter.ended.is_set() or adapter.unplug())
-        theirs = subprocess.run([self.python_with_can(), "-c", self.SCRIPT, adapter.path], text=True, timeout=30,
+        theirs = subprocess.run([self.python_with_can(), "-c", self.SCRIPT, adapter.path], text=True, timeout=90,
                                 capture_output=True, check=True).stdout.split()
         self.assertEqual(theirs, ["321#1122", "1F334456#1122"])
         sent = list(adapter.frames)
         adapter.frames.clear()
 
-        listener = self.start("--bus", f"slcan:{adapter.path}", "listen", "--raw", "-n", "2", "--timeout", "10s")
+        listener = self.start("--bus", f"slcan:{adapter.path}", "listen", "--raw", "-n", "2", "--timeout", "30s")
         self.assertIn("bus: slcan", listener.stderr.readline())
         adapter.say("t32121122\rT1F33445621122\r")
         out, err = listener.communicate(timeout=60)

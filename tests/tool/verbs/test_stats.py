@@ -418,6 +418,7 @@ class Stats(Case):
         self.settle()
         self.run_tool("publish", "gyro", "50ms", "--priority", "high")
         self.run_tool("listen", "gyro", "-n", "8", "--timeout", "20s")
+        self.settle()  # it has read what the other has
         out, _ = self.interrupt(stats)
         self.assertEqual(stats.returncode, 128 + signal.SIGINT)
         gyro = json.loads(out)["buses"][0]["topics"][0]

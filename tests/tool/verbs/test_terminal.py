@@ -174,7 +174,7 @@ class Terminal(Case):
     def test_only_on_a_terminal_a_line_is_drawn_again(self):
         """Neither in a file nor where TERM says that it cannot be."""
         def recorded(**environment):
-            return self.on_terminal("record", "-o", os.path.join(self.folder, "a.log"), "--force", "--duration", "1200ms", errors=True,
+            return self.on_terminal("record", "-o", os.path.join(self.folder, "a.log"), "--force", "--duration", "2500ms", errors=True,
                                     **environment)
         for shown in (recorded(TERM="dumb"), self.run_tool("record", "-o", os.path.join(self.folder, "b.log"), "--duration", "1200ms")[1]):
             self.assertIn("recording to ", shown)
@@ -184,7 +184,7 @@ class Terminal(Case):
     def test_a_terminal_of_two_rows_has_its_own_width(self):
         """Of fewer rows there is none: it does not say how large it is."""
         for rows, shows in ((2, 1), (3, 2), (1, 3)):  # its last one is left free; there are three, and the load
-            shown = self.on_terminal("stats", "--duration", "1200ms", "--no-color", columns=90, rows=rows)
+            shown = self.on_terminal("stats", "--duration", "2500ms", "--no-color", columns=90, rows=rows)
             live = shown.replace("\r\n", "\n").partition("\r\033[")[0].splitlines()
             self.assertEqual(len(live) if rows != 1 else min(len(live), 3), shows, shown)
 

@@ -77,6 +77,7 @@ class Top(played_adapter.WithAdapter, screens.Screens):
         self.shows(100, "PAUSED")
         # What comes meanwhile is shown when it goes on.
         self.press(100, "Escape")
+        self.shows(100, "odometry")  # else the next key may come in one piece with it, and mean another
         self.run_tool("send", "7F0#01")
         self.press(100, "?", "x")
         self.assertNotIn("7F0", "\n".join(self.shows(100, "PAUSED", "odometry")))
@@ -332,6 +333,8 @@ class Top(played_adapter.WithAdapter, screens.Screens):
         self.shows(90, "gyroscope", "frames/s")
         harness.waiting.until(lambda: re.search(r"gyros\w* +(9\.\d\d|10\.\d)", self.row(90, "gyros")), "its rate")
         self.press(90, "q")
+        # What is typed before it has left the terminal is its own, or lost.
+        harness.waiting.until(lambda: "\n".join(self.screen(90)).rstrip().endswith("ready>"), "the shell's prompt")
         # Not its screen alone: LeakSanitizer looks at it when that is gone, and a terminal that hangs up then hangs it.
         self.press(90, "echo LEFT=$?", "Enter")
         self.assertNotIn("frames/s", "\n".join(self.shows(90, "LEFT=0")))

@@ -319,16 +319,16 @@ class Transport(Case):
         with open(spec, "w", encoding="utf-8") as file:
             file.write(SPEC + 'BA_DEF_ BO_ "GenMsgCycleTime" INT 0 60000;\nBA_DEF_DEF_ "GenMsgCycleTime" 0;\n'
                        + "".join(f'BA_ "GenMsgCycleTime" BO_ {number} {period};\n'
-                                 for number, period in ((0x98FEECFE, 300), (0x98FEEBFE, 300), (0x8CF004FE, 10), (0x98EFFFFE, 700))))
+                                 for number, period in ((0x98FEECFE, 300), (0x98FEEBFE, 300), (0x8CF004FE, 10), (0x98EFFFFE, 2500))))
         self.start_sim()
-        doctor = self.start("--spec", spec, "doctor", "--json", "--listen", "2s")
+        doctor = self.start("--spec", spec, "doctor", "--json", "--listen", "7s")
         self.assertIn("bus: sim", doctor.stderr.readline())
         self.settle()
         self.run_tool("send", "--stdin", stdin=BROADCAST)
         out, _ = doctor.communicate(timeout=60)
         self.assertEqual(doctor.returncode, 1)
         self.assertEqual([(each["severity"], each["board"], each["what"]) for each in json.loads(out)["findings"]],
-                         [("warning", "Engine", "of 3 messages due in 2s nothing came of CI")])
+                         [("warning", "Engine", "of 3 messages due in 7s nothing came of CI")])
         plain = os.path.join(self.folder, "plain.dbc")
         with open(plain, "w", encoding="utf-8") as file:
             file.write(SPEC)

@@ -162,7 +162,7 @@ class Travel(Case):
     def test_force_beside_what_is_held_and_told_by_no_sample(self):
         self.start_sim()
         follow = self.start("send", "--stdin", "--timed", stdin=subprocess.PIPE)
-        follow.stdin.write("".join(f"({n / 10:.6f}) sim 20C#E803\n" for n in range(40)))
+        follow.stdin.write("".join(f"({n / 10:.6f}) sim 20C#E803\n" for n in range(200)))
         follow.stdin.close()
         listener = self.listen("follow", "--timeout", "20s")
         listener.stdout.readline()
@@ -236,7 +236,7 @@ class Travel(Case):
 
     def test_what_a_board_does_is_another_commander(self):
         self.start_sim()
-        travel = self.travelling("1m")
+        travel = self.travelling("90cm", "--speed", "2cm/s")
         for command in (("drive", "5cm/s"), ("drive", "5cm/s", "--once"), ("travel", "5cm"), ("behave", "follow"), ("behave", "avoid")):
             _, err = self.run_tool(*command, code=1)
             self.assertIn(f"{command[0]}: di_wheel_drive drives the wheels by itself, as another program has asked it to: travel", err)
@@ -246,7 +246,7 @@ class Travel(Case):
 
     def test_also_where_the_program_has_gone_and_no_sample_comes(self):
         self.start_sim()
-        travel = self.travelling("1m")
+        travel = self.travelling("90cm", "--speed", "2cm/s")
         travel.kill()
         travel.wait()
         self.run_tool("stop", "behaviour")
@@ -262,7 +262,8 @@ class Travel(Case):
         self.start_sim()
         travel = self.travelling("10cm", "--speed", "10cm/s")
         travel.send_signal(signal.SIGSTOP)
-        time.sleep(2.5)  # it arrives meanwhile
+        time.sleep(2.5)  # it arrives meanwhile, where the simulator has the time for it
+        waiting.until(lambda: self.sample("behaviour")["behaviour.ended"] == ARRIVED, "it has arrived")
         travel.send_signal(signal.SIGCONT)
         out, err = travel.communicate(timeout=20)
         self.assertEqual(travel.returncode, 0, err)

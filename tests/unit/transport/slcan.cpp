@@ -202,7 +202,7 @@ void send(Slcan& bus, const can::Frame& f) {
 std::vector<std::string> receive(Slcan& bus, std::size_t count) {
   std::vector<std::string> all;
   while (all.size() < count) {
-    const auto received = bus.receive(5s);
+    const auto received = bus.receive(60s);
     INFO(base::describe(received.error));
     REQUIRE(received);
     all.push_back(text(received->frame));
@@ -318,7 +318,7 @@ TEST_CASE("slcan: an adapter that refuses is distinguished by what it refuses") 
   }
   SECTION("it falls silent on the way") {
     Device device(by_letter({{'\r', "\r"}, {'C', "\r"}, {'V', "V1013\r"}, {'S', ""}}));
-    CHECK_THAT(failure(device.path(), patient_for(1s)).what,
+    CHECK_THAT(failure(device.path(), patient_for(5s)).what,
                Contains("has stopped to answer") && Contains("(command S6)"));
   }
   SECTION("what it does not have, it need not have: V, Z, F") {
@@ -331,13 +331,13 @@ TEST_CASE("slcan: an adapter that refuses is distinguished by what it refuses") 
   }
   SECTION("something that is no adapter talks") {
     Device device([](Device&, char c) { return c == '\r' ? std::string{"login: \r\n"} : std::string{}; });
-    const auto told = failure(device.path(), patient_for(1s));
+    const auto told = failure(device.path(), patient_for(5s));
     CHECK_THAT(told.what, Contains("is not SLCAN"));
     CHECK_THAT(told.remedy, Contains("57600"));
   }
   SECTION("the wrong speed of the line") {
     Device device([](Device&, char c) { return c == '\r' ? std::string{"\xF8\x80\x80\r"} : std::string{}; });
-    CHECK_THAT(failure(device.path(), patient_for(1s)).what, Contains("is not SLCAN"));
+    CHECK_THAT(failure(device.path(), patient_for(5s)).what, Contains("is not SLCAN"));
   }
   SECTION("it goes while it is opened") {
     Device device(by_letter({{'\r', "\r"}}));
