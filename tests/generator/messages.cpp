@@ -272,6 +272,19 @@ TEST_CASE("messages: what a terminal would obey is printed as text, and goes bac
   CHECK(model.values[0].name == "\x07 on");
 }
 
+TEST_CASE("messages: text is shown as it is beside what a terminal would obey, one character from it") {
+  const auto shown = [](const std::string& unit) {
+    const auto loaded =
+        spec::parse("BO_ 1 A: 8 N\n SG_ a : 0|8@1+ (1,0) [0|0] \"" + unit + "\" N\n", "f.dbc");
+    REQUIRE(loaded.spec);
+    return std::string{loaded.spec->catalogue().topics[0].frames[0].fields[0].unit};
+  };
+  CHECK(shown("\x01|\x1F|\x7F") == "\\x01|\\x1f|\\x7f");
+  CHECK(shown("a b~") == "a b~");
+  CHECK(shown("\xC2\x80|\xC2\x9F") == "\\x80|\\x9f");
+  CHECK(shown("\xC2\xA0|\xC3\x80") == "\xC2\xA0|\xC3\x80");
+}
+
 TEST_CASE("messages: topics and messages in one spec") {
   std::string text = read(std::filesystem::path{OCM_SOURCE_DIR} / "tests/generator/good.json");
   text.insert(text.rfind('}'),

@@ -36,6 +36,11 @@ class Program(unittest.TestCase):
         self.assertIn("struct Gyroscope {", self.header.read_text())
         self.assertEqual(sorted(os.listdir(self.folder)), ["good.json", "pair.hpp"])
 
+    def test_without_a_standard_input_a_file_takes_its_number(self):
+        done = run(self.spec, "-o", self.header, preexec_fn=lambda: os.close(0))
+        self.assertEqual((done.returncode, done.stdout, done.stderr), (0, "", ""))
+        self.assertIn("struct Gyroscope {", self.header.read_text())
+
     def test_what_is_doubtful_is_named_with_its_line(self):
         """A header is written all the same. Three places, and how many more: --check names all."""
         spec = self.folder / "bus.dbc"

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <csignal>
+#include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -191,6 +193,45 @@ TEST_CASE("drive by gamepad: beyond the limits of the spec nothing begins") {
   CHECK_THROWS_AS(drive.go("2m/s"), cli::Exit);
   CHECK_THROWS_AS(drive.go("10cm/s", "1m/s"), cli::Exit);
   CHECK(drive.bus.sent().empty());
+}
+
+/// Whether it begins, at 10 cm/s and 1 rad/s, where a speed of the motors has another limit: x is 0, z is 1.
+bool begins_where(std::size_t speed, std::int64_t protocol::Field::*limit, std::int64_t raw) {
+  std::vector<protocol::Topic> topics{amiro::catalogue.topics.begin(), amiro::catalogue.topics.end()};
+  const auto motors = std::find_if(topics.begin(), topics.end(), [](const protocol::Topic& topic) {
+    return topic.role == protocol::Role::drive;
+  });
+  REQUIRE(motors != topics.end());
+  std::vector<protocol::FrameLayout> frames{motors->frames.begin(), motors->frames.end()};
+  std::vector<protocol::Field> fields{frames[0].fields.begin(), frames[0].fields.end()};
+  fields[speed].*limit = raw;
+  frames[0].fields = fields;
+  motors->frames = frames;
+  const protocol::Catalogue catalogue{amiro::catalogue.robot, amiro::catalogue.bit_rate,
+                                      amiro::catalogue.boards, topics};
+  const Silence silence;
+  try {
+    const PadDrive drive{catalogue,
+                         {},
+                         *cli::words::KeySpeed::parse("10cm/s"),
+                         *cli::words::KeySpeed::parse("1rad/s"),
+                         [](std::string_view) {}};
+    return true;
+  } catch (const cli::Exit&) {
+    return false;
+  }
+}
+
+TEST_CASE("drive by gamepad: beyond a limit of one direction nothing begins, either") {
+  using protocol::Field;
+  CHECK(begins_where(0, &Field::raw_max, 100'000));
+  CHECK_FALSE(begins_where(0, &Field::raw_max, 99'999));
+  CHECK(begins_where(0, &Field::raw_min, -100'000));
+  CHECK_FALSE(begins_where(0, &Field::raw_min, -99'999));
+  CHECK(begins_where(1, &Field::raw_max, 1'000'000));
+  CHECK_FALSE(begins_where(1, &Field::raw_max, 999'999));
+  CHECK(begins_where(1, &Field::raw_min, -1'000'000));
+  CHECK_FALSE(begins_where(1, &Field::raw_min, -999'999));
 }
 
 TEST_CASE("drive by gamepad: whatever a person presses, a robot moves only while the button is held") {

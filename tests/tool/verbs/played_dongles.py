@@ -117,6 +117,13 @@ class Thesis(Central):
         return super().feed(char)
 
 
+class Noise(Central):
+    """A device at another speed: of what comes, no line ends with three letters."""
+
+    def feed(self, char):
+        self.write("\x01abcd\x02ab\n")
+
+
 class Silent(Central):
     """A device that answers nothing: no central at all."""
 

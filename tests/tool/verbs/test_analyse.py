@@ -419,6 +419,11 @@ class Tasks(Analyse):
         self.assertEqual(found["b"], 118)
         self.assertEqual(self.column(whole["tasks"], "instances_ns")["b"], [114, 102, 116, 104, 118, 106, 94])
 
+    def test_a_task_without_a_bound_has_no_responses(self):
+        found, whole = self.responses([("a", 2, 60, 100), ("b", 1, 50, 100)], 1)  # 110 %
+        self.assertEqual(found, {"a": 60, "b": None})
+        self.assertEqual(self.column(whole["tasks"], "instances_ns"), {"a": [60], "b": []})
+
     def test_the_robots(self):
         avr = [("A", 15, 1700), ("B", 15, 1640), ("C", 103, 2960), ("D", 30, 1700000), ("E", 20, 43000),
                ("F", 103, 140000), ("G", 30, 255000), ("H", 200, 7300000)]
@@ -677,6 +682,14 @@ b,15,20000000,20000000,20000000,20000000,0,136000,300000,true
         out, _ = self.run_tool("analyse", "trace", log, "--rates", "gyro=20ms", "--rates", "motors=100ms", "--rates", "led_1=1s")
         for remark in remarks:
             self.assertNotIn(remark, out)
+
+    def test_a_given_rate_has_the_priority_that_it_says_or_that_of_the_log(self):
+        log = self.log([(i * 100_000, "101#1027000000000000") for i in range(10)])  # motors, at high priority
+        for rate, count, broken in (("motors=100ms", 10, []), ("motors=100ms@high", 10, []),
+                                    ("motors=100ms@low", 0, ["set: 10 frames of 0x101, which is not in the set"])):
+            out, _ = self.run_tool("analyse", "trace", log, "--json", "--rates", rate, code=1 if broken else 0)
+            found = json.loads(out)
+            self.assertEqual(([row["count"] for row in found["messages"]], found["broken"]), ([count], broken), rate)
 
     def test_messages_of_a_spec_are_the_set(self):
         car = os.path.join(os.environ["OCM_SOURCE_DIR"], "examples", "small_car.dbc")

@@ -1,12 +1,13 @@
 """amiroctl behave: the boards follow a line or avoid obstacles, until the verb ends."""
 
 import json
+import os
 import resource
 import signal
 import subprocess
 import time
 
-from harness import Case, main, waiting
+from harness import SOURCE, Case, main, waiting
 
 
 class Behave(Case):
@@ -173,6 +174,22 @@ class Behave(Case):
             self.assertIn("amiroctl: behave: power_management does not answer, so nothing shows that it has done it\n"
                           "          is it powered and on sim? ", err)
             self.assertNotIn("no set point", err)
+
+    def test_a_board_that_commands_no_motors_of_another_shows_nothing(self):
+        """The motors are its own, or there are none: that no set point came says nothing of it."""
+        with open(os.path.join(SOURCE, "tests", "tool", "verbs", "transcripts", "files", "behaves.json"), encoding="utf-8") as file:
+            spec = json.load(file)
+        with open(os.path.join(SOURCE, "spec", "topics.json"), encoding="utf-8") as file:
+            motors = next(topic for topic in json.load(file)["topics"] if topic["name"] == "motors")
+        avoid = {"name": "avoid", "id": "0x30", "board": "wheels", "source": "decided: for tests", "kind": "actuator",
+                 "frames": [{"fields": [{"name": "speed", "byte": 0, "type": "u16", "scale": 0.001, "unit": "m/s"}]}]}
+        path = os.path.join(self.folder, "own.json")
+        self.start_sim("--without", "di_wheel_drive,power_management,light_ring")
+        for topics in ([avoid], [avoid, motors | {"board": "wheels"}]):
+            with open(path, "w", encoding="utf-8") as file:
+                json.dump(spec | {"topics": topics}, file)
+            _, err = self.run_tool("--spec", path, "behave", "avoid", "--for", "600ms")  # longer than a board may be silent
+            self.assertNotIn("nothing shows", err)
 
     def test_a_board_that_is_off_is_told_of_while_it_waits(self):
         self.start_sim("--without", "di_wheel_drive")

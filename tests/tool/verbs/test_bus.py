@@ -156,6 +156,22 @@ class OnTheBus(Case):
                 self.assertEqual(hint in err, told, err)
                 self.assertEqual("silent until it is asked" in err, told, err)  # nor of another sensor, that comes every 100 ms
 
+    def test_after_two_seconds_of_silence_it_says_who_has_to_be_asked(self):
+        self.start_sim()
+
+        def heard_after():
+            begin = time.monotonic()
+            listener = self.listen("gyro")
+            self.assertEqual(listener.stderr.readline(), "a sensor is silent until it is asked, as by `amiroctl publish gyroscope 500ms`\n")
+            lasted = time.monotonic() - begin
+            self.interrupt(listener)
+            return lasted
+        times = [heard_after()]
+        while times[-1] >= 3 and len(times) < 5:  # a busy machine began late
+            times.append(heard_after())
+        self.assertGreaterEqual(times[-1], 2)
+        self.assertLess(times[-1], 3, times)
+
     def test_ctrl_c_ends_listen_cleanly(self):
         self.start_sim()
         for number in (signal.SIGINT, signal.SIGTERM):

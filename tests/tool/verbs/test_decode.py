@@ -300,6 +300,16 @@ class Decode(Case):
             self.assertEqual(out, "")
             self.assertIn("none of 7 frames matches\n", err)
 
+    def test_a_frame_means_what_the_spec_of_its_interface_says(self):
+        specs = []
+        for interface, name in (("can0", "Engine"), ("can1", "Target")):
+            path = self.file(interface + ".dbc", f'BU_: N\nBO_ 256 {name}: 8 N\n SG_ Speed : 0|8@1+ (1,0) [0|0] "" N\n')
+            specs += ["--spec", f"{interface}={path}"]
+        log = "".join(f"({i + 1}.0) {interface} 100#0{i}00000000000000\n" for i, interface in enumerate(("can0", "can1", "can0", "can2")))
+        out, _ = self.run_tool(*specs, "decode", "--json", stdin=log)
+        self.assertEqual([(event["bus"], event.get("topic"), event.get("fields")) for event in self.objects(out)],
+                         [("can0", "Engine", {"Speed": 0}), ("can1", "Target", {"Speed": 1}), ("can0", "Engine", {"Speed": 2}), ("can2", None, None)])
+
     def test_remote_frames_of_known_identifiers(self):
         car = os.path.join(SOURCE, "examples", "small_car.dbc")
         log = "(1.0) can0 100#0019000000000000\n(1.1) can0 100#R8\n(1.2) can0 101#R\n"

@@ -5,7 +5,7 @@ import time
 
 from harness import Case, main, waiting
 from played_central import Central, Robot
-from played_dongles import BaseFirmware, Silent, Thesis
+from played_dongles import BaseFirmware, Noise, Silent, Thesis
 from realtime import RealTime
 
 
@@ -124,6 +124,30 @@ class Dongles(Case):
         self.dongle.slow = 1.5  # when it was asked last, for what the thesis's own would answer
         self.assertIn("AVR", self.tool("robots", "--listen", "500ms")[0])
         self.assertGreater(self.dongle.commands.count("stop"), 2, self.dongle.commands)  # settled as ours is
+
+    def check_asked_no_further(self, kind, slow, word):
+        """A dongle that answers so many s after the first question, in time: it never gets this word."""
+        self.play(kind)
+        heard = []
+        for _ in range(5):  # a dongle that is played on a busy machine may answer too late
+            self.dongle.slow = slow
+            self.dongle.commands.clear()
+            self.tool("robots", "--listen", "100ms")
+            heard.append([command for command in self.dongle.commands if word in command])
+            if not heard[-1]:
+                break
+        self.assertEqual(heard[-1], [], heard)
+
+    def test_ours_is_not_asked_what_the_base_firmware_would_answer(self):
+        self.check_asked_no_further(Central, 0.3, "AT?")
+
+    def test_the_base_firmware_is_not_asked_what_the_thesiss_own_would_answer(self):
+        self.check_asked_no_further(BaseFirmware, 0.9, "list")  # its own question comes after 0.7 s
+
+    def test_noise_is_no_answer(self):
+        self.play(Noise)
+        _, err = self.run_tool("robots", "--central", self.dongle.path, "--baud", "9600", code=1)
+        self.assertIn(f"nothing at {self.dongle.path} answers as a central does, at 9600 baud", err)
 
     def test_one_that_answers_nothing(self):
         self.play(Silent)

@@ -240,6 +240,17 @@ class Top(played_adapter.WithAdapter, screens.Screens):
         self.press(80, "q")
         self.assertEqual(self.ended(80)[-1], "END 0")
 
+    def test_topics_that_are_named_are_shown_alone(self):
+        log = self.log(1)
+        with open(log, "a", encoding="ascii") as file:
+            file.write("(1000.950000) can0 7F0#01\n")
+        self.open(100, "top", log, "gyro", rows=24)
+        self.shows(100, "gyroscope", " end")
+        self.assertEqual(self.row(100, "7F0"), "")
+        self.press(100, "q")
+        self.assertEqual(self.ended(100)[-1], "END 0")
+        self.assertIn("top: no topic 'gyroo'\n", self.run_tool("top", log, "gyroo", code=2)[1])
+
     def test_a_log_that_is_wound_back_is_counted_anew(self):
         self.open(130, "top", self.log(), rows=24)
         self.shows(130, "gyroscope", "of 29.9 s")
