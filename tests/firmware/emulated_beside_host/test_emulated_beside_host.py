@@ -152,7 +152,7 @@ class Frozen(Robots):
             recording = self.record(name)
             for number, frame in enumerate(refused, 1):
                 self.tool(name, "send", frame)
-                # One refusal, one frame; two that a board hears at once may be told in one.
+                # One refusal, one frame; it may say one word of two that it hears at once.
                 self.until(lambda: sum(int(e["id"], 16) & 0x400 != 0 for e in self.so_far(recording[1])) >= number)
             self.tool(name, "once", "gyro")  # and all else goes on
             time.sleep(0.3)

@@ -137,7 +137,7 @@ class Line(harness.Case):
         while True:
             seen = len(self.numbers())
             time.sleep(1)
-            host.ask("V")  # it has not stood still meanwhile
+            host.ask("V")  # it has run meanwhile
             if len(self.numbers()) == seen:
                 break
         numbers = self.numbers()
