@@ -209,6 +209,7 @@ bool begins_where(std::size_t speed, std::int64_t protocol::Field::*limit, std::
   motors->frames = frames;
   const protocol::Catalogue catalogue{amiro::catalogue.robot, amiro::catalogue.bit_rate,
                                       amiro::catalogue.boards, topics};
+  const World world{1};
   const Silence silence;
   try {
     const PadDrive drive{catalogue,
