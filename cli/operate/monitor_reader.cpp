@@ -207,6 +207,10 @@ class MonitorReader : private ValueReader {
         percent ? base::divide_rounded(*percent, {1, -1}) : base::Result<std::int64_t>{percent.error};
     if (!per_mille || *per_mille < 0 || *per_mille > 1000)
       return tell(limit->second, spec::quoted(*text) + " is no load of a bus", std::string{form});
+    if (*per_mille == (limit->first == Is::above ? 1000 : 0))
+      return tell(limit->second,
+                  std::string{"no load is "} + (limit->first == Is::above ? "above " : "below ") + *text,
+                  std::string{form});
     for (const Condition& other : file_.conditions)
       if (other.watched == Watched::bus_load && other.window != condition.window)
         return tell(at, "another window than that of an earlier bus_load",

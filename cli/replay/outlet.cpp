@@ -33,14 +33,14 @@ Outlet::Sent Outlet::send(const log::Entry& entry, base::Time latest) {
   if (entry.is_fd() && !takes_fd_) return Sent::fd_frame;
   const auto frame = entry.classic();
   if (!frame || commanded_motors(index_, *frame) == nullptr) {
+    if (frame && behaviours_.is_begun_by(*frame) && !may_move_now(latest)) return Sent::late;
     outgoing_.send(entry.frame());
     if (frame) behaviours_.sent(*frame);
     ++behind_;
     return Sent::yes;
   }
   if (!is_rest(*frame)) {
-    if (!outgoing_.all_left(client::longest_without_set_point)) leave_at_rest();
-    if (Clock::now().time_since_epoch() > latest.time_since_epoch()) return Sent::late;
+    if (!may_move_now(latest)) return Sent::late;
     outgoing_.otherwise_after_the_next(still_moving);
   }
   outgoing_.send(*frame);
@@ -49,6 +49,11 @@ Outlet::Sent Outlet::send(const log::Entry& entry, base::Time latest) {
   sent_at_ = Clock::now();
   may_wait_ = !is_rest(*frame);
   return Sent::yes;
+}
+
+bool Outlet::may_move_now(base::Time latest) {
+  if (!outgoing_.all_left(client::longest_without_set_point)) leave_at_rest();
+  return Clock::now().time_since_epoch() <= latest.time_since_epoch();
 }
 
 void Outlet::expect_motion_left() {

@@ -29,9 +29,9 @@ class Outlet {
     fd_frame,     ///< this bus has none
     late,         ///< a set point of motion that could not go before `latest`
   };
-  /// Waits for room up to a second, then leaves through cli::fail. A set point of motion waits until all that
-  /// was sent before it has left, as long as motors wait for one; then zero is put behind what waits. It is
-  /// not sent after `latest`.
+  /// Waits for room up to a second, then leaves through cli::fail. A set point of motion, and one by which a
+  /// board moves by itself, waits until all that was sent before it has left, as long as motors wait for one;
+  /// then zero is put behind what waits. It is not sent after `latest`.
   Sent send(const log::Entry& entry, base::Time latest);
 
   /// Leaves as `send` does, with zero behind what waits, where the set point of motion that came last has not
@@ -62,6 +62,8 @@ class Outlet {
   [[nodiscard]] std::string_view name() const { return bus_->name(); }
 
  private:
+  /// Waits until all has left, or leaves at rest. false: it is later than `latest`.
+  [[nodiscard]] bool may_move_now(base::Time latest);
   /// Puts zero behind whatever waits (at most one set point of motion does) and leaves, unless all has left
   /// just now.
   void leave_at_rest();

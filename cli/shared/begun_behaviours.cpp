@@ -6,16 +6,26 @@
 
 namespace ocm::cli {
 
-void BegunBehaviours::sent(const can::Frame& frame) {
+const protocol::Topic* BegunBehaviours::topic_of(const can::Frame& frame) const {
   const client::Subject subject = index_.subject(frame.id, frame.format);
   const protocol::Topic* const topic = subject.topic;
   if (frame.format != can::Format::base || !subject.frame || frame.dlc != subject.frame.layout().dlc())
-    return;
+    return nullptr;
   // Motors are set to rest by who holds them; what has no timeout, such as a light, stays as it was
   // commanded.
   if (topic->kind != protocol::Kind::actuator || topic->role == protocol::Role::drive ||
       topic->timeout.count() == 0)
-    return;
+    return nullptr;
+  return topic;
+}
+
+bool BegunBehaviours::is_begun_by(const can::Frame& frame) const {
+  return topic_of(frame) != nullptr && !is_rest(frame);
+}
+
+void BegunBehaviours::sent(const can::Frame& frame) {
+  const protocol::Topic* const topic = topic_of(frame);
+  if (topic == nullptr) return;
   std::erase_if(all_, [topic](const Begun& each) { return each.topic == topic; });
   if (is_rest(frame)) return;
   Begun begun{topic, frame};

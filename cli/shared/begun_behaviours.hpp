@@ -22,6 +22,8 @@ class BegunBehaviours {
 
   /// Any frame, in the order in which they are sent.
   void sent(const can::Frame& frame);
+  /// Whether a board goes on by itself once it has this frame.
+  [[nodiscard]] bool is_begun_by(const can::Frame& frame) const;
   /// Those that no frame has ended.
   [[nodiscard]] const std::vector<Begun>& all() const noexcept { return all_; }
   /// Their names, with a verb: "travel was", "avoid, travel were"; empty: there is none.
@@ -29,6 +31,9 @@ class BegunBehaviours {
   void clear() noexcept { all_.clear(); }
 
  private:
+  /// What the frame is a set point of, if it is one of those; otherwise nullptr.
+  [[nodiscard]] const protocol::Topic* topic_of(const can::Frame& frame) const;
+
   client::FrameIndex index_;
   std::vector<Begun> all_;
 };

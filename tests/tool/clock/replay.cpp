@@ -593,4 +593,37 @@ TEST_CASE("replay: where one bus fails, what runs on the others is ended") {
   }
 }
 
+TEST_CASE("replay: on a bus from which nothing leaves, one travel waits, and its end comes behind it") {
+  const Silence silence;
+  World world{1};
+  PlayedBus::Conditions conditions;
+  const Moment begin = World::start + 350ms;
+  conditions.stuck = {{begin, begin + 60s}};
+  std::vector<log::Entry> entries;
+  for (int i = 0; i < 20; ++i) entries.emplace_back(base::Time{i * 100ms}, travels, std::uint16_t{0});
+  OnOneBus<PlayedLog> replayed{world, conditions, entries, std::size_t{1}};
+  CHECK_THROWS_AS(replayed.play(), cli::Exit);
+  CHECK(world.now() < begin + 150ms + client::longest_without_set_point + 100ms);
+  CHECK(replayed.player->end_after_all() == std::vector{std::string{"can0: "} + cli::still_travelling});
+  const auto& sent = replayed.sent();
+  REQUIRE(sent.size() == 6);  // four that have left, one that waits, and its end
+  CHECK(!cli::is_rest(sent[4].frame));
+  CHECK((sent[5].frame.id == travels.id && cli::is_rest(sent[5].frame)));
+}
+
+TEST_CASE("replay: a travel that the bus has kept back is not begun late") {
+  const Silence silence;
+  World world{1};
+  PlayedBus::Conditions conditions;
+  const Moment begin = World::start + 350ms;
+  conditions.stuck = {{begin, begin + 400ms}};
+  std::vector<log::Entry> entries;
+  for (int i = 0; i < 20; ++i) entries.emplace_back(base::Time{i * 100ms}, travels, std::uint16_t{0});
+  OnOneBus<PlayedLog> replayed{world, conditions, entries, std::size_t{1}};
+  replayed.play();
+  const auto& sent = replayed.sent();
+  REQUIRE(sent.size() == entries.size());
+  for (std::size_t i = 1; i < sent.size(); ++i) CHECK(sent[i].taken >= sent[i - 1].left);
+}
+
 }  // namespace tool_clock_replay_test

@@ -144,6 +144,10 @@ constexpr Row rows[] = {
     {R"({"rate": "odometry", "below": 5, "window": "1s"})",
      R"({"rate": "odometry", "below": 1000000001, "window": "61s"})"},
     {R"("above": "72.5%")", R"("above": "100%")"},
+    {R"("above": "72.5%")", R"("above": "99.9%")"},
+    {R"("above": "72.5%")", R"("below": "100%")"},
+    {R"("above": "72.5%")", R"("below": "0.1%")"},
+    {R"("above": "72.5%")", R"("below": "0%")"},
     {R"("above": "72.5%")", R"("above": "100.1%")"},
     {R"("above": "72.5%")", R"("above": "0%")"},
     {R"("above": "72.5%")", R"("above": "-0.1%")"},
@@ -264,7 +268,7 @@ TEST_CASE("operate: a load of the bus is rounded to per mille, with and without 
     std::int64_t per_mille;
   };
   for (const auto& [typed, per_mille] : {Typed{"72.5%", 725}, Typed{"72.5", 725}, Typed{"7.04%", 70},
-                                         Typed{"7.06%", 71}, Typed{"100%", 1000}, Typed{"1", 10}}) {
+                                         Typed{"7.06%", 71}, Typed{"99.9%", 999}, Typed{"1", 10}}) {
     CAPTURE(typed);
     const auto loaded = with_change(R"("72.5%")", '"' + std::string{typed} + '"');
     REQUIRE(loaded.file);

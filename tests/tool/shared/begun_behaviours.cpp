@@ -40,6 +40,16 @@ TEST_CASE("behaviours that frames have begun, and what ends them", "[shared]") {
             .empty());
 }
 
+TEST_CASE("a frame begins a behaviour, or not", "[shared]") {
+  const cli::BegunBehaviours begun{amiro::catalogue};
+  const auto begins = [&begun](const char* frame) { return begun.is_begun_by(*can::parse_frame(frame)); };
+  CHECK(begins("20B#50C300000000E803"));
+  CHECK(begins("10B#0000000000000100"));
+  for (const char* other : {"20B#0000000000000000", "201#A086010000000000", "23C#010203", "20B#50C300",
+                            "608#000000000000", "0000020B#50C300000000E803"})
+    CHECK_FALSE(begins(other));
+}
+
 TEST_CASE("behaviours that frames have begun, in words", "[shared]") {
   cli::BegunBehaviours begun{amiro::catalogue};
   CHECK(begun.names().empty());
