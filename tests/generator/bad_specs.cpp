@@ -193,8 +193,11 @@ TEST_CASE("a frame is as long as its fields, also where a single bit is all of i
 }
 
 TEST_CASE("a range may have a single raw number in it, and no fewer") {
-  const auto held = [](const std::string& range) {
-    const auto loaded = ocm::spec::parse(good_with(R"("range": [-500, 500])", "\"range\": " + range), "f");
+  const auto held = [](const std::string& range, const std::string& scale = "0.0175") {
+    const auto loaded =
+        ocm::spec::parse(good_with(R"("scale": 0.0175, "unit": "deg/s", "range": [-500, 500])",
+                                   "\"scale\": " + scale + R"(, "unit": "deg/s", "range": )" + range),
+                         "f");
     std::vector<std::int64_t> raw;
     if (loaded.spec == nullptr) return raw;
     const auto& field = loaded.spec->model().topics.at(0).frames.at(0).fields.at(0);
@@ -211,6 +214,18 @@ TEST_CASE("a range may have a single raw number in it, and no fewer") {
   CHECK(held("[0.01, 0.0174]").empty());
   CHECK(held("[-573.4401, 0]").empty());
   CHECK(held("[0, 573.4226]").empty());
+  // Of a scale below zero the lowest raw number has the highest value.
+  const auto falling = [&held](const std::string& range) { return held(range, "-0.0175"); };
+  CHECK(falling("[0, 0]") == Raw{0, 0});
+  CHECK(falling("[0.0175, 0.0175]") == Raw{-1, -1});
+  CHECK(falling("[-0.0175, 0]") == Raw{0, 1});
+  CHECK(falling("[-0.02, 0.04]") == Raw{-2, 1});
+  CHECK(falling("[-573.4225, 573.44]") == Raw{-32768, 32767});
+  CHECK(falling("[573.44, 573.44]") == Raw{-32768, -32768});
+  CHECK(falling("[-573.4225, -573.4225]") == Raw{32767, 32767});
+  CHECK(falling("[0.01, 0.0174]").empty());
+  CHECK(falling("[-573.4226, 0]").empty());
+  CHECK(falling("[0, 573.4401]").empty());
 }
 
 TEST_CASE("a topic has 255 frames, and no more, their counts included") {

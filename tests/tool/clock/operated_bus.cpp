@@ -31,6 +31,7 @@ class Bench {
   PlayedBus* played = nullptr;
   std::deque<std::string> answers;
   std::vector<std::string> asked;
+  std::string path;
   std::unique_ptr<LocalServer> server;
   std::unique_ptr<cli::OperatedBus> bus;
 
@@ -38,7 +39,7 @@ class Bench {
     folder_ = std::filesystem::temp_directory_path() / fmt::format("ocm-operated-{}", ::getpid());
     std::filesystem::create_directories(folder_);
     std::filesystem::permissions(folder_, std::filesystem::perms::owner_all);
-    const std::string path = (folder_ / "operator.sock").string();
+    path = (folder_ / "operator.sock").string();
     static constexpr host::LocalService service{"an operator", "an operator", host::Cause::other, false};
     auto opened = LocalServer::open(path, service);
     REQUIRE(opened);
@@ -202,6 +203,21 @@ TEST_CASE("operated bus: when the operator has ended only the end of a motion go
   CHECK(bench.on_bus() == Texts{"201#0000000000000000", "20B#0000000000000000", "229#0000"});
   CHECK(bench.bus->delivery().obstruction.what.empty());
   CHECK_FALSE(bench.bus->commands_itself(frame("201#1027000000000000")).again_and_again);
+}
+
+TEST_CASE(
+    "operated bus: of an operator that is stopped the greeting is waited for a second, an answer 300 ms") {
+  Bench bench;
+  bench.world.beside = {};
+  const Moment begin = bench.world.now();
+  const auto link = cli::LocalLink::connect(bench.path, "the operator on can0", "drive");
+  const Moment middle = bench.world.now();
+  REQUIRE_FALSE(link);
+  CHECK(link.error.what == fmt::format("the operator on can0 (process {}) does not answer", ::getpid()));
+  CHECK((middle - begin) / 1ms == 1000);
+  CHECK(bench.bus->commands_itself(frame("201#1027000000000000")).who.empty());
+  CHECK((bench.world.now() - middle) / 1ms == 300);
+  CHECK(bench.asked.empty());
 }
 
 TEST_CASE("operated bus: it is simulated where its bus is") {

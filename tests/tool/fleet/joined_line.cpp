@@ -71,6 +71,18 @@ TEST_CASE("joined line: robots come in as many answers as it takes") {
   CHECK(owner.heard() == std::vector<std::string>{"hello 1 goto", "robots 0", "robots 5"});
 }
 
+TEST_CASE("joined line: between two looks it leaves the owner alone for 50 ms") {
+  Owner owner{{"ok\nmap", "ok\nidle\n", "ok\nidle\n" + row(3, "A")}};
+  JoinedLine line = Owner::joined();
+  CHECK(line.peers().empty());
+  const auto begin = std::chrono::steady_clock::now();
+  line.exchange();
+  CHECK(std::chrono::steady_clock::now() - begin >= 50ms);
+  REQUIRE(line.peers().size() == 1);
+  CHECK(line.peers()[0].index == 3);
+  CHECK(owner.heard() == std::vector<std::string>{"hello 1 goto", "robots 0", "robots 0"});
+}
+
 TEST_CASE("joined line: an owner that goes round in circles, or says what is not known, ends the command") {
   for (const char* const answer :
        {"ok\nidle\nmore 0\n", "ok\nmore x\n", "ok\nmore -1\n", "ok\nmore\n", "ok\nrow\n"}) {

@@ -264,8 +264,12 @@ TEST_CASE("top pictures: other keys of the same meaning, and keys that mean noth
   const auto effect = [&](const Key& key) { return bus.view.press(key); };
   CHECK(effect(letter("Z")).kind == Effects::pause);
   CHECK(effect(letter(",")).by == -1s);
+  CHECK(effect(letter(".")).by == 1s);
+  CHECK(effect(Key{Kind::left}).by == -10s);
   CHECK(effect(Key{Kind::right}).by == 10s);
   CHECK(effect(letter("[")).kind == Effects::slower);
+  CHECK(effect(letter("]")).kind == Effects::faster);
+  CHECK(effect(letter("0")).kind == Effects::rewind);
   for (const Key& key :
        {letter("qq"), letter("x"), Key{Kind::tabulator}, Key{Kind::function, {}, 2}, Key{Kind::backspace}})
     CHECK(effect(key).kind == Effects::none);

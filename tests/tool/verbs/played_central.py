@@ -2,11 +2,13 @@
 docs/mapper-link.md, not from the library: commands, answers, packets of 20 bytes with their prefix; robots that shake hands,
 drive in a rectangular room on command, and see its walls."""
 
+import contextlib
 import fcntl
 import math
 import os
 import random
 import select
+import socket
 import threading
 import time
 import tty
@@ -299,3 +301,43 @@ class Central:
             robot.linked = True
             return self.write(f"connected {number}\n")
         return self.write("error: start, list, stop, conn i, switch i, drop i, *, reset\n")
+
+
+class Owner:
+    """A program that has a central's line, and knows no robots: others join it, one after the other. `heard` is what they ask."""
+
+    def __init__(self, folder, line):
+        digits = 0x811C9DC5  # of the line's path, in the name of the socket [FNV-1a]
+        for byte in os.path.realpath(line).encode():
+            digits = (digits ^ byte) * 0x01000193 & 0xFFFFFFFF
+        self.heard = []
+        self.server = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        self.server.bind(os.path.join(folder, f"line-{digits:08x}.sock"))
+        self.server.listen()
+        self.thread = threading.Thread(target=self.serve, daemon=True)
+        self.thread.start()
+
+    def close(self):
+        self.server.shutdown(socket.SHUT_RDWR)  # it takes no more programs
+        self.server.close()
+
+    def looks(self):
+        """The requests to look for robots, with their time in milliseconds."""
+        return [request for request in self.heard if request.startswith("scan ")]
+
+    def serve(self):
+        while True:
+            try:
+                caller, _ = self.server.accept()
+            except OSError:
+                return
+            with caller, contextlib.suppress(OSError):
+                while request := caller.recv(65536).decode():
+                    self.heard.append(request)
+                    caller.send(self.answer(request))
+
+    @staticmethod
+    def answer(request):
+        if request.startswith("robots"):
+            return b"ok\nidle\n"
+        return b"no\nit draws none\n" if request.startswith("map") else b"ok\nplayed"

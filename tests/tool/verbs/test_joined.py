@@ -12,6 +12,7 @@ import stat
 import time
 
 from harness import Case, main, waiting
+from played_central import Owner
 from test_fleet import Line
 
 
@@ -127,6 +128,20 @@ class TogetherOnALine(Joined):
         self.assertRegex(err, r"map: robots \(process \d+\) has the central's line")
         _, err = self.tool("map", os.path.join(self.folder, "a.svg"), "--watch", code=1)
         self.assertRegex(err, r"robots \(process \d+\) draws no map")
+
+
+class HowLongALookTakes(Line):
+    def test_three_seconds_unless_told_otherwise(self):
+        """The program that has the line is played: it hears for how many milliseconds the central is to look for robots."""
+        owner = Owner(os.path.join(self.folder, "ocm"), self.central.path)
+        self.addCleanup(owner.close)
+        for options, look in (((), "scan 3000"), (("--scan", "700ms"), "scan 700")):
+            for verb in (("robots",), ("robots", "--list"), ("goto", "AVR", "90", "50")):
+                owner.heard.clear()
+                _, err = self.run_tool(*verb, *options, code=1)
+                self.assertIn(f"{verb[0]}: the central finds no robot", err)
+                # What is listed already is asked for first, without a look.
+                self.assertEqual(owner.looks(), [look] if "--list" in verb else ["scan 0", look], verb)
 
 
 class AMapIsAskedForAtTheEnd(Joined):

@@ -226,6 +226,21 @@ class Plot(Case):
             out, _ = self.run_tool("plot", "--live", *words, "--port", "0", "--duration", "100ms")
             self.assertRegex(out, rf"^http://127\.0\.0\.1:[0-9]+/#plot={re.escape(shows)}\n$")
 
+    def test_specs_of_one_interface_each(self):
+        """The same identifier is another message on each interface, and none on a third one."""
+        specs = []
+        for interface, name in (("can0", "Engine"), ("can1", "Target")):
+            path = os.path.join(self.folder, f"{interface}.dbc")
+            with open(path, "w", encoding="ascii") as file:
+                file.write(f'BU_: N\nBO_ 256 {name}: 8 N\n SG_ Value : 0|8@1+ (1,0) [0|0] "m" N\n')
+            specs += ["--spec", f"{interface}={path}"]
+        log = os.path.join(self.folder, "two.log")
+        with open(log, "w", encoding="ascii") as file:
+            file.writelines(f"({START}.{i}00000) can{i % 3} 100#{i:02X}00000000000000\n" for i in range(9))
+        out, _ = self.run_tool(*specs, "plot", log, "Engine.Value", "Target.Value", "--script")
+        self.assertEqual([[point for piece in block for point in piece] for block in self.blocks(out)],
+                         [[(0.0, 0.0), (0.3, 3.0), (0.6, 6.0)], [(0.1, 1.0), (0.4, 4.0), (0.7, 7.0)]])
+
     def test_names_that_mean_something_to_gnuplot_or_xml(self):
         path = self.log([(100 * i, "608#" + i16(i, i, i)) for i in range(3)], "a'b<c>&{}_^`!.log")
         self.assertIn("set label 1 '?a b?' at", self.script(path, "gyro.z", "--title", "\x1fa b\x7f"))  # no controls of a terminal

@@ -12,7 +12,7 @@ import time
 
 import websocket
 from harness import Case, main, sanitized, waiting
-from played_central import Central, Robot
+from played_central import Central, Owner, Robot
 
 STARTS = ("--start", "AVR=0.4,0.5,0", "--start", "Arduino=0.8,0.5,90")
 
@@ -160,6 +160,21 @@ class Robots(Case):
         self.central.robots = [self.avr, self.arduino]
         viewer.publish("/ocm/fleet", {"order": "look"})
         self.says(viewer, "the central refuses Arduino: no link to 1")
+
+    def test_a_look_takes_three_seconds_unless_told_otherwise(self):
+        """The program that has the line is played: it hears for how long the central is to look."""
+        owner = Owner(os.path.join(self.folder, "ocm"), self.central.path)
+        self.addCleanup(owner.close)
+        for scan, look in (((), "scan 3000"), (("--scan", "700ms"), "scan 700")):
+            owner.heard.clear()
+            server, port, token = self.serve("--allow-commands", scan=scan)
+            viewer = self.viewer(port, token, "/ocm/fleet")
+            self.state(viewer, lambda state: state["line"].startswith("played ") and not state["scans"], "it has joined")
+            self.assertEqual(owner.looks(), [])
+            viewer.publish("/ocm/fleet", {"order": "look"})
+            waiting.until(owner.looks, "it looks")
+            self.assertEqual(owner.looks(), [look])
+            self.interrupt(server)
 
     # --- what is asked ---
 
