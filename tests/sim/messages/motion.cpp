@@ -232,6 +232,23 @@ TEST_CASE("A name or a bit stays for 5 to 20 s, a number takes a new way every 2
   CHECK(most > 6);
 }
 
+TEST_CASE("A float takes the way of a number with the same range, seed and place") {
+  protocol::Field whole = field_of(32, false, 0);
+  whole.raw_max = 1'000'000'000;
+  protocol::Field real{};
+  real.position.width = 64;
+  real.number = protocol::Number::float64;
+  real.max = {1, 9};
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const sim::FieldMotion motion{whole, seed, 1}, same{real, seed, 1};
+    for (int ms = 0; ms < 60'000; ms += 100) {
+      const base::Time now{std::chrono::milliseconds{ms}};
+      CAPTURE(seed, ms);
+      REQUIRE(std::abs(real.value(same.at(now)) - static_cast<double>(motion.at(now))) < 2);
+    }
+  }
+}
+
 TEST_CASE("A float without a range moves within 100 above its start, or above 0") {
   for (const bool wide : {false, true}) {
     protocol::Field field{};

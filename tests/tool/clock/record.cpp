@@ -1,6 +1,7 @@
 // The recorder, on buses, a disk and a clock that are made of a seed: stops of the program, a wall clock that
 // is set, adapters that come and go, a slow disk, a full one. What was on a bus is in the files or is
 // counted.
+#include <cerrno>
 #include <csignal>
 #include <cstring>
 #include <deque>
@@ -513,6 +514,34 @@ TEST_CASE("recorder: frames are written once a second, and at once where they ar
   CHECK(once_a_second >= 4);
   CHECK(once_a_second <= 6);
   CHECK(writes(true) > 100);
+}
+
+TEST_CASE("recorder: what can be read of a file is said, whose end the disk does not take") {
+  const Silence silence;
+  const Folder folder;
+  for (const std::size_t frames : {std::size_t{1}, std::size_t{2}}) {
+    folder.empty();
+    World world{1};
+    bool full = false;
+    world.disk = [&full](int, std::string_view text) {
+      return full ? cli::Written{0, ENOSPC} : cli::Written{text.size(), 0};
+    };
+    record::FilesOptions options;
+    options.format = cli::logs::find_format("pcapng");  // which ends with what came over each interface
+    options.path = folder / "run.pcapng";
+    options.sync = false;
+    record::Files files{options, amiro::catalogue};
+    REQUIRE(files.open().ok());
+    log::Interfaces interfaces;
+    interfaces.number("can0");
+    const std::vector<log::Entry> entries(frames, log::Entry{base::Time{1s}, can::Frame{0x601, 4, {}}});
+    REQUIRE(files.write(entries, interfaces, 0s));
+    REQUIRE(files.flush());
+    full = true;
+    CHECK_FALSE(files.finish());
+    CHECK_THAT(files.failure().what, Catch::Contains("No space left on device"));
+    CHECK(files.readable() == frames);
+  }
 }
 
 /// There is always one more batch of frames, each of which takes a millisecond to fetch.

@@ -2,10 +2,12 @@
 #include "cli/operate/spool.hpp"
 
 #include <array>
+#include <cerrno>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "ocm/topics/amiro.hpp"
@@ -18,42 +20,69 @@ using namespace ocm;
 using namespace ocm::test;
 namespace operate = cli::operate;
 
-TEST_CASE(
-    "spool: a file takes frames of less than its time, and the next one begins with that which is as old") {
+/// A spool in a folder that goes with it, for frames of some time behind the first.
+struct Spooled {
   World world{1};
-  const std::filesystem::path folder =
+  std::filesystem::path folder =
       std::filesystem::temp_directory_path() / ("ocm-spool-" + std::to_string(world.random()));
-  std::filesystem::create_directories(folder);
   operate::Spool spool{folder.string(), "test", 10s, amiro::catalogue};
   log::Interfaces interfaces;
-  interfaces.number("can0");
-  const auto append = [&](Duration after) {
+
+  Spooled() {
+    std::filesystem::create_directories(folder);
+    interfaces.number("can0");
+  }
+  ~Spooled() { std::filesystem::remove_all(folder); }
+  Spooled(const Spooled&) = delete;
+  Spooled& operator=(const Spooled&) = delete;
+
+  transport::Outcome<void> append(Duration after) {
     const std::array entries{log::Entry{base::Time{1'000'000'000s} + after, can::Frame{0x608, 1, {}}}};
-    CHECK(spool.append(entries, interfaces));
-  };
-  const auto holds = [&](int number) {
+    return spool.append(entries, interfaces);
+  }
+  std::string holds(int number) const {
     const auto file = folder / ("test.running-" + std::to_string(number) + ".log");
-    if (!std::filesystem::exists(file)) return std::string{"none"};
+    if (!std::filesystem::exists(file)) return "none";
     std::string times;
     std::ifstream in{file};
     for (std::string line; std::getline(in, line);) times += line.substr(0, line.find(' '));
     return times;
+  }
+};
+
+TEST_CASE(
+    "spool: a file takes frames of less than its time, and the next one begins with that which is as old") {
+  Spooled spooled;
+  for (const Duration after : {Duration{0s}, Duration{10s - 1us}}) CHECK(spooled.append(after));
+  CHECK(spooled.holds(0) == "(1000000000.000000)(1000000009.999999)");
+  CHECK(spooled.holds(1) == "none");
+  CHECK(spooled.append(10s));
+  CHECK(spooled.holds(1) == "(1000000010.000000)");
+  CHECK(spooled.append(20s));
+  CHECK(spooled.holds(0) == "(1000000020.000000)");
+  CHECK(spooled.holds(1) == "(1000000010.000000)");
+  CHECK(spooled.append(20s - 1us));  // a clock that was set back
+  CHECK(spooled.holds(0) == "(1000000020.000000)");
+  CHECK(spooled.holds(1) == "(1000000019.999999)");
+  spooled.spool.end();
+  CHECK(std::filesystem::is_empty(spooled.folder));
+}
+
+TEST_CASE("spool: what the disk does not take is said, and what comes next is in another file") {
+  Spooled spooled;
+  bool full = false;
+  spooled.world.disk = [&full](int, std::string_view text) {
+    return full ? cli::Written{0, ENOSPC} : cli::Written{text.size(), 0};
   };
-  append(0s);
-  append(10s - 1us);
-  CHECK(holds(0) == "(1000000000.000000)(1000000009.999999)");
-  CHECK(holds(1) == "none");
-  append(10s);
-  CHECK(holds(1) == "(1000000010.000000)");
-  append(20s);
-  CHECK(holds(0) == "(1000000020.000000)");
-  CHECK(holds(1) == "(1000000010.000000)");
-  append(20s - 1us);  // a clock that was set back
-  CHECK(holds(0) == "(1000000020.000000)");
-  CHECK(holds(1) == "(1000000019.999999)");
-  spool.end();
-  CHECK(std::filesystem::is_empty(folder));
-  std::filesystem::remove_all(folder);
+  CHECK(spooled.append(0s));
+  full = true;
+  const auto refused = spooled.append(1s);
+  REQUIRE_FALSE(refused);
+  CHECK_THAT(refused.error.what, Catch::Contains("running-0.log: No space left on device"));
+  full = false;
+  CHECK(spooled.append(2s));
+  CHECK(spooled.holds(0) == "(1000000000.000000)");
+  CHECK(spooled.holds(1) == "(1000000002.000000)");
 }
 
 TEST_CASE(

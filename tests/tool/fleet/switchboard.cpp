@@ -156,6 +156,20 @@ TEST_CASE("switchboard: robots are found, linked, spoken to and heard") {
         "nothing was lost\n");
 }
 
+TEST_CASE("switchboard: what is typed keeps it busy until it is with the robot") {
+  Bench bench;
+  CHECK(bench.after(1ms, "start\nconn 0\n") == "scanning\nconnecting 0\nconnected 0\n");
+  CHECK_FALSE(bench.board->busy());
+  const std::string packet = "{U,-180,50}{S,IDL}{S";  // of 20 bytes: it is full
+  bench.board->feed(packet.substr(0, 19), bench.now);
+  CHECK_FALSE(bench.board->busy());
+  bench.board->feed(packet.substr(19), bench.now);
+  CHECK(bench.board->busy());
+  CHECK(bench.after(0ms) == "");
+  CHECK(bench.first.heard(packet) == packet);
+  CHECK_FALSE(bench.board->busy());
+}
+
 TEST_CASE("switchboard: a line that is closed sends what it has, for 300 ms at most") {
   Bench bench;
   CHECK(bench.after(1ms, "start\nconn 0\n") == "scanning\nconnecting 0\nconnected 0\n");
@@ -168,6 +182,7 @@ TEST_CASE("switchboard: a line that is closed sends what it has, for 300 ms at m
   REQUIRE(inputs.size() == 1);
   CHECK(inputs[0].events == (POLLIN | POLLOUT));
   CHECK(bench.after(1ms, "*drop 0\n") == "command\nclosing 0\n");
+  CHECK(bench.board->busy());  // nothing waits any more, but its last words are not sent
   CHECK(bench.board->due() == bench.now + 2ms);
   CHECK(bench.after(299ms) == "");
   CHECK(bench.after(1ms) == "closed 0\n");

@@ -160,4 +160,45 @@ TEST_CASE("JSON text: names of values that lie together, apart, below zero and b
   CHECK(names(0x00'FE'FF'FF).empty());
 }
 
+/// How many bytes there is room for in a run that was empty.
+std::size_t room_of_a_new_run() {
+  log::Bytes bytes;
+  const char* const first = bytes.room(1);
+  std::size_t room = 1;
+  while (bytes.room(room + 1) == first) ++room;
+  return room;
+}
+
+TEST_CASE("JSON text: a line is written to where there is room for it, however little is left", "[output]") {
+  const Message message{{field("a", 0, 8), field("b", 8, 56)}};
+  cli::JsonText text{message.catalogue()};
+  std::vector<log::Entry> entries(6, entry_of(UINT64_MAX));
+  entries[1].id = 0x124;  // of no message
+  entries[1].raw_dlc = 15;
+  entries[1].direction = log::Direction::received;
+  entries[2].length = 7;  // too short
+  entries[3].format = can::Format::base_remote;
+  entries[4].format = can::Format::error;
+  entries[4].id = 0x40;
+  entries[5].id = 0x124;
+  entries[5].flags = log::flag::fd;
+  entries[5].length = log::max_fd_length;
+  entries[5].direction = log::Direction::received;
+  entries[5].data.fill(0xA5);
+  const std::size_t room = room_of_a_new_run();
+  for (const log::Entry& entry : entries) {
+    const std::string line = line_of(text, entry);
+    REQUIRE(line.ends_with("}\n"));
+    for (std::size_t left = 0; left < 2 * line.size(); ++left) {
+      log::Bytes out;
+      out.zeros(room - left);
+      const char* const before = out.view().data();
+      text.write(out, "can0", entry);
+      CAPTURE(line, left);
+      REQUIRE((out.size() <= room || out.view().data() != before));
+      REQUIRE(out.view().substr(room - left) == line);
+    }
+  }
+}
+
 }  // namespace tool_output_json_text_test

@@ -26,6 +26,7 @@ class Robot:
         self.loses = 0           # so many of its next set points
         self.silent = False      # says nothing
         self.mumbles = False     # says that it is idle, but never where it is
+        self.repeats_idle = False  # says that it is idle behind each update, too
         self.knows_who = True    # and answers {S,WHO},
         self.who_late = 0.0      # so many seconds later
         self.knows_compass = True  # and {C,number}
@@ -154,6 +155,7 @@ class Robot:
         if not self.paused and not self.mumbles and now - self.spoke >= 0.05:
             self.spoke = now
             text += self.update()
+            self.idled = 0.0 if self.repeats_idle else self.idled
         if now >= self.busy_until and now - self.idled >= 0.5:
             self.idled = now
             text += "{S,IDL}\n"
@@ -240,10 +242,13 @@ class Central:
             self.find()
             for index, robot in enumerate(self.listed):
                 text = robot.say(now) if robot.linked else ""
+                heard = ""
                 while text:
                     if robot.is_heard():
-                        self.write(self.serve_text(index, robot, text[:20]))
+                        heard += self.serve_text(index, robot, text[:20])
                     text = text[20:]
+                if heard:
+                    self.write(heard)
 
     def serve_text(self, index, robot, text):
         """A packet of a robot as it goes to the server."""

@@ -833,6 +833,15 @@ class Picture(Analyse):
             self.assertEqual(out, picture.read(), "the picture of the docs is another: scripts/pictures worst_case")
         self.run_tool("analyse", "bus", "--svg", os.path.join(self.folder, "none", "x.svg"), code=1)
 
+    def test_a_picture_has_room_for_sixty_rows(self):
+        for count, left_out in ((60, ""), (61, "; the first 60 of 61")):
+            rows = "".join(f"task_{i},{i + 1},1000,1000000,,,\n" for i in range(count))
+            out, _ = self.run_tool("analyse", "tasks", self.file(TASKS + rows), "--svg", "-")
+            texts = [text.text or "" for text in ElementTree.fromstring(out).iter("{http://www.w3.org/2000/svg}text")]
+            self.assertEqual(len({text for text in texts if text.startswith("task_")}), 60)
+            head, = (text for text in texts if "% of the processor" in text)
+            self.assertEqual(head.partition("preemptive")[2], left_out)
+
     def test_releases_that_are_later_than_a_period(self):
         """The first one comes 25 ns late, and each next one as soon as it may: 1 ns behind it, and every 10 ns from there."""
         out, _ = self.run_tool("analyse", "tasks", self.file(TASKS + "a,1,1,10,,25,\n"), "--svg", "-", code=1)

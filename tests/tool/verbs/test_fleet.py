@@ -290,6 +290,12 @@ class Pause(Line):
         self.assertEqual(self.tool("unpause", "all")[0], "AVR: goes on\nArduino: goes on\n")
         self.assertFalse(self.avr.paused)
 
+    def test_a_robot_that_says_where_it_is_is_not_paused_behind_a_drive(self):
+        self.avr.repeats_idle = True
+        out, _ = self.tool("goto", "AVR", "0", "5")
+        self.assertEqual(out, "AVR: x 5 cm, y 0 cm, heading 0 deg\n")
+        self.assertNotIn("{S,PAU}", self.avr.heard)
+
     def test_a_robot_that_cannot_be_reached_is_a_failure_and_the_others_are_held(self):
         self.arduino.reachable = False
         for words in (["AVR", "Arduino"], ["all"]):

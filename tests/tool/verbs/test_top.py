@@ -179,6 +179,29 @@ class Top(played_adapter.WithAdapter, screens.Screens):
         self.assertGreater(pictures, 10)  # more than the ten a second that there are without keys, if the machine has time
         self.assertLessEqual(pictures, 20 * span + 2)
 
+    def test_from_one_picture_to_the_next(self):
+        """Of a log that is played: each picture says how far it is. A key makes one, too."""
+        pid = os.path.join(self.folder, "pid")
+        self.open(100, "top", self.log(), "--interval", "1h", rows=24, before=f"echo $$ > {pid}; ")
+
+        def at():
+            found = re.search(r"([\d.]+) of 29\.9 s", "\n".join(self.screen(100)))
+            return found and found[1]
+        harness.waiting.until(at, "the first picture")
+        top = subprocess.run(["pgrep", "-P", self.read(pid).strip(), "amiroctl"], capture_output=True, text=True, check=True).stdout.strip()
+
+        def looks():
+            """How often it has waited. [man 5 proc: voluntary_ctxt_switches]"""
+            return int(re.search(r"^voluntary_ctxt_switches:\s*(\d+)", self.read(f"/proc/{top}/status"), re.M)[1])
+        first, seen = at(), looks()
+        harness.waiting.until(lambda: looks() >= seen + 20, "it plays for some time")
+        self.assertEqual(at(), first)
+        self.press(100, "p")
+        self.shows(100, "paused")
+        self.assertNotEqual(at(), first)
+        self.press(100, "q")
+        self.assertEqual(self.ended(100)[-1], "END 0")
+
     def test_what_is_missing_comes_first(self):
         self.start_sim("--frozen")
         self.run_tool("publish", "gyro", "100ms")
