@@ -1,6 +1,7 @@
 // What `publish` says of a bus before it asks a board, word for word, and what becomes of a behaviour that a
 // board was asked for.
 #include <algorithm>
+#include <sstream>
 #include <string>
 #include <unistd.h>
 #include <vector>
@@ -139,6 +140,24 @@ TEST_CASE("admission: what is said of a bus before a board is asked is as it was
   std::string text;
   for (const Row& row : rows) text += said(row);
   is_as_in("tests/tool/clock/golden/admission.txt", text);
+}
+
+TEST_CASE(
+    "admission: what a status names and was not heard may be of any priority, so that no bound is known") {
+  // power_status in the table, where the status of its board has these bits for what it publishes.
+  const auto row_of = [](int publishing) {
+    const Row row{{"publish", "gyro", "50ms"},
+                  {.force = false, .explain = true, .listen = 100ms},
+                  {{frame(0x739, {0, 0, 0, 0, 0, 0, 0, 0}), 3ms, 50ms},
+                   {frame(0x73A, {0, 0, publishing, 0, 0, 0, 0, 0}), 4ms, 50ms}},
+                  true};
+    std::istringstream lines{said(row)};
+    for (std::string line; std::getline(lines, line);)
+      if (line.find("  power_status ") != std::string::npos) return line;
+    return std::string{};
+  };
+  CHECK(row_of(0).empty());
+  CHECK_THAT(row_of(0xFF), Catch::EndsWith("  not known"));
 }
 
 TEST_CASE("admission: more identifiers than the load is computed of are refused") {

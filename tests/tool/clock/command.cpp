@@ -264,6 +264,25 @@ TEST_CASE("drive: a stop beyond the end of its time is one, too") {
   }
 }
 
+TEST_CASE(
+    "drive: set points for which the program was stopped are dropped, and the next keep their distance") {
+  const Silence silence;
+  World world{1};
+  PlayedBus bus{world, {}};
+  world.stop(World::start + 500ms, 250ms);
+  drive_to_its_end(bus, 1500ms);
+  const auto sent = after_question(bus.sent());
+  REQUIRE(sent.size() > 10);
+  std::size_t behind = 0;
+  for (std::size_t i = 1; i + 1 < sent.size(); ++i) {
+    const Duration distance = sent[i].taken - sent[i - 1].taken;
+    REQUIRE(distance > client::hold_period - 2ms);
+    if (distance > client::hold_period + 2ms) ++behind;
+  }
+  CHECK(behind == 1);
+  CHECK(cli::is_rest(sent.back().frame));
+}
+
 TEST_CASE("drive: another program is heard, too, where its set points have come and were not looked at yet") {
   for (const auto others : {Timeline::Others::refused, Timeline::Others::allowed}) {
     World world{1};

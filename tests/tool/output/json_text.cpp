@@ -4,11 +4,14 @@
 #include <cstdint>
 #include <limits>
 #include <random>
+#include <span>
 #include <string>
 #include <vector>
 
 #include <catch2/catch.hpp>
 
+#include "ocm/client/sample.hpp"
+#include "ocm/j1939/transport.hpp"
 #include "ocm/log/bytes.hpp"
 #include "ocm/protocol/topic.hpp"
 
@@ -199,6 +202,59 @@ TEST_CASE("JSON text: a line is written to where there is room for it, however l
       REQUIRE(out.view().substr(room - left) == line);
     }
   }
+}
+
+TEST_CASE("JSON text: of J1939's transport protocol a choice shows what completes a message with its field",
+          "[output]") {
+  const std::array<Field, 2> fields{field("Near", 0, 8), field("Far", 72, 8)};
+  std::array<protocol::FrameLayout, 2> layouts;
+  std::array<protocol::Topic, 2> topics;
+  for (std::size_t i = 0; i < topics.size(); ++i) {
+    layouts[i].length = 10;
+    layouts[i].fields = fields;
+    layouts[i].address = {protocol::Address::By::pgn, true, i == 0 ? 0x18FE'EC00U : 0x18FE'EB00U};
+    topics[i].name = i == 0 ? "Chosen" : "Other";
+    topics[i].kind = protocol::Kind::message;
+    topics[i].board = protocol::no_board;
+    topics[i].frames = {&layouts[i], 1};
+  }
+  const protocol::Catalogue catalogue{"truck", 250'000, {}, topics};
+  const std::vector<std::string> words{"Chosen.Far"};
+  const auto choice = cli::Selection::of(catalogue, words);
+  REQUIRE(choice);
+  cli::JsonText all{catalogue}, chosen{catalogue, *choice};
+
+  std::array<std::uint8_t, 18> bytes{1};  // behind a message eight may be read
+  bytes[9] = 7;
+  log::Entry packet;
+  packet.id = 0x1CEB'FF00;
+  packet.format = can::Format::extended;
+  packet.length = 8;
+  // The line of a packet that completes so many bytes of a message; of none where there are none.
+  const auto line = [&](cli::JsonText& text, const protocol::Topic* topic, std::size_t size) {
+    j1939::Transported whole;
+    whole.data = std::span{bytes}.first(size);
+    client::Reception reception;
+    reception.topic = topic;
+    if (size != 0) reception.transported = &whole;
+    log::Bytes out;
+    const bool any = text.write_transport(out, "can0", packet, reception);
+    CHECK(any == !out.view().empty());
+    return std::string{out.view()};
+  };
+  using Catch::Contains;
+  CHECK_THAT(line(chosen, &topics[0], 10),
+             Contains(R"("topic":"Chosen","fields":{"Far":7},"units":{"Far":""})"));
+  CHECK(line(chosen, &topics[0], 9).empty());  // without that field
+  CHECK(line(chosen, &topics[1], 10).empty());
+  CHECK(line(chosen, nullptr, 10).empty());  // of a message that the spec has not
+  CHECK(line(chosen, nullptr, 0).empty());
+  CHECK_THAT(line(all, &topics[0], 10),
+             Contains(R"("fields":{"Near":1,"Far":7},"units":{"Near":"","Far":""})"));
+  CHECK_THAT(line(all, &topics[0], 9), Contains(R"("fields":{"Near":1},"units":{"Near":""})"));
+  CHECK_THAT(line(all, &topics[1], 10), Contains(R"("topic":"Other")"));
+  CHECK_THAT(line(all, nullptr, 10), Contains(R"("error":"unknown identifier")"));
+  CHECK_THAT(line(all, nullptr, 0), Contains(R"("transport":"packet","data":"0000000000000000")"));
 }
 
 }  // namespace tool_output_json_text_test

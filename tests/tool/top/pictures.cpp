@@ -120,6 +120,28 @@ TEST_CASE("top pictures: what is late, what is missing, and what else the first 
   is_as_in("tests/tool/top/golden/first_line.txt", all);
 }
 
+TEST_CASE("top pictures: frames of no whole sample are a warning, what never came or is selected is none") {
+  Bus2 bus;
+  bus.models = Models{catalogue, 250'000};
+  for (int i = 0; i < 5; ++i) bus.model().take(entry(2500ms + i * 100ms, 0x510, {0, 0, 0, 1}));
+  bus.press({letter("a")});
+  const auto styles_of = [&bus](const std::string& row) {
+    std::istringstream lines{bus.draw({120, 9})};
+    std::string styles;
+    for (std::string line; styles.empty() && std::getline(lines, line);)
+      if (line.starts_with("|" + row + " ")) std::getline(lines, styles);
+    return styles;
+  };
+  // Its faults, and "no whole sample, 3 incomplete".
+  CHECK(styles_of("scale") == "    bold:9,plain:7,dim:7,plain:7,dim:15,warning:7,dim:10,warning:29");
+  CHECK(styles_of("lamp_2") == "    bold:9,plain:7,dim:7,plain:7,dim:44");
+  bus.press({Key{Kind::home}});
+  CHECK(styles_of("scale") == "    selected:120");
+  CHECK(styles_of("lamp_2") == "    bold:9,plain:7,dim:7,plain:7,dim:44");
+  bus.press({Key{Kind::down}, Key{Kind::down}});
+  CHECK(styles_of("lamp_2") == "    selected:120");
+}
+
 TEST_CASE("top pictures: in each order, and reversed") {
   std::string all;
   Bus2 bus;

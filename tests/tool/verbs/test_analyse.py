@@ -900,6 +900,16 @@ BA_ "GenMsgCycleTime" BO_ 2566844672 100;
             _, err = self.run_tool("analyse", "bus", os.path.join(self.folder, "car.dbc"), "--rates", rates, code=2)
             self.assertIn(word, err)
 
+    def test_a_message_is_overwritten_by_the_next_one(self):
+        """A deadline beyond the period is the period, whoever says that."""
+        text = json.dumps({"robot": "car", "bus": {"bit_rate": 125000}, "messages": [
+            {"name": "Slow", "id": "0x101", "period": "10ms", "deadline": "25ms", "fields": []},
+            {"name": "Soon", "id": "0x102", "period": "20ms", "deadline": "15ms", "fields": []},
+            {"name": "Usual", "id": "0x103", "period": "20ms", "fields": []}]})
+        for rates, soon in (((), 15), (("--rates", "Soon=15ms"), 15), (("--rates", "Soon=5ms"), 5)):
+            found = self.bus(text, *rates, name="car.json")
+            self.assertEqual(self.column(found["messages"], "deadline_ns"), {"Slow": 10000000, "Soon": soon * 1000000, "Usual": 20000000})
+
     def test_what_another_reader_sees(self):
         """Names, identifiers, cycle times and senders of canmatrix are those that were analysed."""
         reader = ("import sys, canmatrix.formats\n"
@@ -1041,6 +1051,11 @@ BA_ "CANFD_BRS" BO_ 259 0;
         # 0x55 has no stuff bits; BRS 1, ESI 0 and DLC 1111 with a zero behind it neither.
         self.assertEqual(row["measured_ns"], 31 * 2000 + (5 + 512 + 32 + 1) * 500)
         self.assertAlmostEqual(found["measured_utilisation"], row["measured_ns"] / 1e7, places=4)
+        # Where no rate of the data is known, they took at least what they take at the highest: 62.5 ns a bit.
+        self.file(self.TEXT.replace('BA_ "BaudrateCANFD" 2000000;', ""), "fd.dbc")
+        out, _ = self.run_tool("analyse", "trace", log, "--set", os.path.join(self.folder, "fd.dbc"), "--json")
+        row = next(row for row in json.loads(out)["messages"] if row["name"] == "Fast")
+        self.assertEqual(row["measured_ns"], 31 * 2000 + (5 + 512 + 32 + 1) * 1000 // 16)
 
 
 class Sporadic(Analyse):
