@@ -901,7 +901,7 @@ BA_ "GenMsgCycleTime" BO_ 2566844672 100;
             self.assertIn(word, err)
 
     def test_a_message_is_overwritten_by_the_next_one(self):
-        """A deadline beyond the period is the period, whoever says that."""
+        """A deadline beyond the period is the period."""
         text = json.dumps({"robot": "car", "bus": {"bit_rate": 125000}, "messages": [
             {"name": "Slow", "id": "0x101", "period": "10ms", "deadline": "25ms", "fields": []},
             {"name": "Soon", "id": "0x102", "period": "20ms", "deadline": "15ms", "fields": []},
