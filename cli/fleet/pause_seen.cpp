@@ -1,7 +1,6 @@
 #include "cli/fleet/pause_seen.hpp"
 
 #include <chrono>
-#include <cstdint>
 
 #include "cli/fleet/pausing.hpp"
 
@@ -20,10 +19,11 @@ bool pause_until_seen(CentralLine& line, unsigned index, bool paused) {
 }
 
 bool seems_paused(CentralLine& line, unsigned index) {
-  const std::uint32_t before = line.robot(index).pieces;
+  // Another program may have heard updates before, until it was paused.
+  const RobotNow before = line.robot(index);
   const bool updates = line.wait(2500ms, [&] {
     const RobotNow robot = line.robot(index);
-    return robot.update.has_value() || robot.pieces != before;
+    return robot.updated != before.updated || robot.pieces != before.pieces;
   });
   const RobotNow robot = line.robot(index);
   return !updates && (robot.last == mapper::link::Kind::idle || robot.last == mapper::link::Kind::pong);

@@ -26,20 +26,21 @@ constexpr std::string_view file_text = R"({
     {"name": "watching", "streams": [{"topic": "odometry", "period": "50ms"}]},
     {"name": "halted", "streams": [{"topic": "odometry", "period": "50ms"}]}
   ],
-  "monitors": [{"name": "full", "when": {"bus_load": true, "above": "LIMIT", "window": "100ms"}}],
+  "monitors": [{"name": "full", "when": {"bus_load": true, "above": "99.9%", "window": "100ms"}}],
   "transitions": [
     {"from": "watching", "to": "halted", "when": "full"},
     {"from": "halted", "to": "watching", "on_request": true}
   ]
 })";
 
-/// All that it prints in a second, while ten times as many bits come as the bus has room for.
-std::string printed(std::string_view limit) {
-  std::string text{file_text};
-  text.replace(text.find("LIMIT"), std::string_view{"LIMIT"}.size(), limit);
-  const auto loaded = operate::parse(text, "load.operator.json", amiro::catalogue, 500'000);
+/// All that it prints in a second, while ten times as many bits come as the bus has room for. A file cannot
+/// have the limit 1000, which no load is above.
+std::string printed(std::int64_t per_mille) {
+  auto loaded = operate::parse(file_text, "load.operator.json", amiro::catalogue, 500'000);
   for (const auto& problem : loaded.problems) UNSCOPED_INFO(problem.place << ": " << problem.what);
   REQUIRE(loaded.file);
+  REQUIRE(loaded.file->conditions.size() == 1);
+  CHECK(std::exchange(loaded.file->conditions[0].limit, per_mille) == 999);
   World world{1};
   world.interrupt(World::start + 1s, SIGINT);
   PlayedBus::Conditions conditions;
@@ -62,8 +63,8 @@ std::string printed(std::string_view limit) {
 }
 
 TEST_CASE("operate: a bus on which more comes than it has room for is full, and not more than that") {
-  CHECK_THAT(printed("99.9%"), Catch::Contains("watching -> halted: "));
-  CHECK_THAT(printed("100%"), Catch::Contains("operator load is in watching") && !Catch::Contains(" -> "));
+  CHECK_THAT(printed(999), Catch::Contains("watching -> halted: "));
+  CHECK_THAT(printed(1000), Catch::Contains("operator load is in watching") && !Catch::Contains(" -> "));
 }
 
 }  // namespace tool_clock_operate_load_test

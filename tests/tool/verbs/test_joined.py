@@ -332,6 +332,16 @@ class AnOwnerThatOnlyKeepsTheLine(Joined):
         self.assertIn("central: 4 programs joined", err)
         waiting.until(lambda: self.central.target is None, "command mode")
 
+    def test_a_paused_robot_is_paused_again_behind_a_drive(self):
+        self.keep()
+        self.assertRegex(self.run_tool("robots", "--listen", "1s")[0], "AVR .* idle")  # the owner has heard its updates
+        self.assertEqual(self.tool("pause", "AVR")[0], "AVR: paused\n")
+        self.tool("goto", "AVR", "0", "5")
+        self.assertTrue(self.avr.paused)
+        self.tool("unpause", "AVR")
+        self.tool("goto", "AVR", "0", "0")
+        self.assertFalse(self.avr.paused)
+
     def test_another_one_is_refused(self):
         self.keep()
         _, err = self.run_tool("central", "--own", code=1)
