@@ -19,14 +19,16 @@ bool pause_until_seen(CentralLine& line, unsigned index, bool paused) {
 }
 
 bool seems_paused(CentralLine& line, unsigned index) {
-  // Another program may have heard updates before, until it was paused.
+  // The program that has the line may have heard updates of the robot before it was paused.
   const RobotNow before = line.robot(index);
   const bool updates = line.wait(2500ms, [&] {
     const RobotNow robot = line.robot(index);
     return robot.updated != before.updated || robot.pieces != before.pieces;
   });
   const RobotNow robot = line.robot(index);
-  return !updates && (robot.last == mapper::link::Kind::idle || robot.last == mapper::link::Kind::pong);
+  // A paused robot goes on to say that it is idle; one of which nothing comes is out of reach.
+  return !updates && !robot.lost && robot.heard - robot.updated >= 1s &&
+         (robot.last == mapper::link::Kind::idle || robot.last == mapper::link::Kind::pong);
 }
 
 void pause_unseen(CentralLine& line, unsigned index) {

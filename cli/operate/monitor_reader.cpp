@@ -208,9 +208,11 @@ class MonitorReader : private ValueReader {
     if (!per_mille || *per_mille < 0 || *per_mille > 1000)
       return tell(limit->second, spec::quoted(*text) + " is no load of a bus", std::string{form});
     if (*per_mille == (limit->first == Is::above ? 1000 : 0))
-      return tell(limit->second,
-                  std::string{"no load is "} + (limit->first == Is::above ? "above " : "below ") + *text,
-                  std::string{form});
+      return tell(
+          limit->second,
+          spec::quoted(*text) + (limit->first == Is::above ? " is 100 % in tenths, and no load is above that"
+                                                           : " is 0 % in tenths, and no load is below that"),
+          std::string{form});
     for (const Condition& other : file_.conditions)
       if (other.watched == Watched::bus_load && other.window != condition.window)
         return tell(at, "another window than that of an earlier bus_load",

@@ -33,10 +33,13 @@ Outlet::Sent Outlet::send(const log::Entry& entry, base::Time latest) {
   if (entry.is_fd() && !takes_fd_) return Sent::fd_frame;
   const auto frame = entry.classic();
   if (!frame || commanded_motors(index_, *frame) == nullptr) {
-    if (frame && behaviours_.is_begun_by(*frame) && !may_move_now(latest)) return Sent::late;
+    const bool begins = frame && behaviours_.is_begun_by(*frame);
+    if (begins && !may_move_now(latest)) return Sent::late;
     outgoing_.send(entry.frame());
     if (frame) behaviours_.sent(*frame);
     ++behind_;
+    ++behind_motion_;
+    if (begins) motion_sent();
     return Sent::yes;
   }
   if (!is_rest(*frame)) {
@@ -46,9 +49,15 @@ Outlet::Sent Outlet::send(const log::Entry& entry, base::Time latest) {
   outgoing_.send(*frame);
   set_point_ = *frame;
   behind_ = 0;
-  sent_at_ = Clock::now();
-  may_wait_ = !is_rest(*frame);
+  may_wait_ = false;
+  if (!is_rest(*frame)) motion_sent();
   return Sent::yes;
+}
+
+void Outlet::motion_sent() {
+  behind_motion_ = 0;
+  sent_at_ = Clock::now();
+  may_wait_ = true;
 }
 
 bool Outlet::may_move_now(base::Time latest) {
@@ -60,7 +69,7 @@ void Outlet::expect_motion_left() {
   if (!may_wait_ || Clock::now() - sent_at_ < client::longest_without_set_point) return;
   const auto delivery = bus_->delivery();
   may_wait_ = false;
-  if (delivery.known && delivery.pending > behind_) leave_at_rest();
+  if (delivery.known && delivery.pending > behind_motion_) leave_at_rest();
 }
 
 void Outlet::leave_at_rest() {

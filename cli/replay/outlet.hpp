@@ -27,14 +27,14 @@ class Outlet {
     yes,
     error_frame,  ///< a report of a controller: nothing for the wire
     fd_frame,     ///< this bus has none
-    late,         ///< a set point of motion that could not go before `latest`
+    late,         ///< a set point of motion, or what begins a behaviour, that could not go before `latest`
   };
   /// Waits for room up to a second, then leaves through cli::fail. A set point of motion, and one by which a
   /// board moves by itself, waits until all that was sent before it has left, as long as motors wait for one;
   /// then zero is put behind what waits. It is not sent after `latest`.
   Sent send(const log::Entry& entry, base::Time latest);
 
-  /// Leaves as `send` does, with zero behind what waits, where the set point of motion that came last has not
+  /// Leaves as `send` does, with zero behind what waits, where the frame of motion that came last has not
   /// left for so long. For the time up to the next frame; waits for nothing.
   void expect_motion_left();
 
@@ -64,6 +64,8 @@ class Outlet {
  private:
   /// Waits until all has left, or leaves at rest. false: it is later than `latest`.
   [[nodiscard]] bool may_move_now(base::Time latest);
+  /// What was sent just now moves the robot.
+  void motion_sent();
   /// Puts zero behind whatever waits (at most one set point of motion does) and leaves, unless all has left
   /// just now.
   void leave_at_rest();
@@ -75,8 +77,10 @@ class Outlet {
   BegunBehaviours behaviours_;
   can::Frame set_point_;      ///< of motors, the last that was sent
   std::uint64_t behind_ = 0;  ///< frames that were sent after it
+  /// Of the last frame that moves the robot, a set point or what begins a behaviour.
   Clock::time_point sent_at_{};
-  bool may_wait_ = false;  ///< it is one of motion, and may wait still
+  std::uint64_t behind_motion_ = 0;  ///< frames that were sent after it
+  bool may_wait_ = false;            ///< it may wait still, and no rest has come behind it
 };
 
 }  // namespace ocm::cli::replay

@@ -139,8 +139,9 @@ void run(const GotoOptions& options, int& exit_code) {
   fleet::CentralLine line{"goto", options.line};
   const unsigned index = line.connect_one(options.robot);
   const std::string name = line.name(index);
-  const bool paused = fleet::seems_paused(line, index);
   const bool is_stop = wanted == mapper::link::SetPoint{};
+  // A stop is said at once; it ends no pause.
+  const bool paused = !is_stop && fleet::seems_paused(line, index);
   fleet::LinkWatch watch;
   if (watch.step(line.end(), line.robot(index), false)) {
     if (options.call_back && !is_stop)

@@ -284,7 +284,7 @@ class Moving(Robots):
         for topic, period in (("accelerometer", 0.5), ("magnetometer", 0.8), ("gyroscope", 5)):
             times = [sample[-1][2] for sample in samples["qemu"][topic]]
             mean = (times[-1] - times[0]) / (len(times) - 1)
-            self.assertAlmostEqual(mean, period, delta=0.01 + self.spare.late / (len(times) - 1), msg=topic)  # of the first or the last one
+            self.assertAlmostEqual(mean, period, delta=0.01 + self.spare.slack / (len(times) - 1), msg=topic)  # of the first or the last one
         texts = self.summaries()
         self.assertNotIn("against a data sheet", texts["qemu"])
 

@@ -172,7 +172,7 @@ class Machine:
             stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         self.lines = {}
         for line, listener in listeners.items():
-            listener.settimeout(60)
+            listener.settimeout(20)
             self.lines[line] = listener.accept()[0]
             listener.close()
         self._qmp_file = self.lines["qmp"].makefile("rw")
@@ -264,7 +264,7 @@ class Machine:
             if gone is None:
                 self.process.kill()
         else:
-            gone = self.process.wait(60)
+            gone = self.process.wait(10)
         said = self.process.communicate()[0]
         self._qmp_file.close()
         for line in self.lines.values():
@@ -288,7 +288,7 @@ class Board(Machine):
         self.thread(self._listen_can)
         self.thread(parts.serve, self.lines["parts"])
         # Before it says CR it does not listen: QEMU throws away what a UART gets that is not enabled.
-        self.wait(lambda: self.answers, 60, "the adapter's first word")
+        self.wait(lambda: self.answers, 10, "the adapter's first word")
 
     def _listen_can(self):
         line = b""
@@ -323,7 +323,7 @@ class Board(Machine):
         """A line to the adapter."""
         self._can.sendall(text.encode("ascii") + b"\r")
 
-    def ask(self, text, timeout=60):
+    def ask(self, text, timeout=5):
         """The adapter's next answer that is no frame."""
         with self.news:
             seen = len(self.answers)

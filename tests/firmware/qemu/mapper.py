@@ -209,7 +209,7 @@ class Robot(harness.Machine):
     def confirm(self):
         """From switched on to confirmed."""
         self.connect()
-        self.wait(lambda: self.of("{H,"), 60, "the first handshake, once the sensors are measured")
+        self.wait(lambda: self.of("{H,"), 15, "the first handshake, once the sensors are measured")
         now = self.tell("{S,CON}")
-        self.wait(lambda: self.of("{U,", now), 60, "the first update")
+        self.wait(lambda: self.of("{U,", now), 5, "the first update")
         return now

@@ -54,7 +54,7 @@ class Breakdowns(harness.Case):
         asked = time.monotonic()
         topic = STATUS[self.name]
         self.board.send(0x200 | topic, b"\x02")
-        self.board.wait(lambda: self.board.of(0x600 | topic, asked), 60, "the status")
+        self.board.wait(lambda: self.board.of(0x600 | topic, asked), 5, "the status")
         data = self.board.of(0x600 | topic, asked)[0][1]
         return data[3], int.from_bytes(data[:3], "little")
 
@@ -63,7 +63,7 @@ class Breakdowns(harness.Case):
         status names."""
         started, events = len(self.board.answers), len(self.parts.events)
         self.parts.breakdowns.append(breakdown)
-        self.board.wait(lambda: len(self.board.answers) > started, 60, "the restart")
+        self.board.wait(lambda: len(self.board.answers) > started, 10, "the restart")
         self.assertEqual(self.board.answers[started:], [""], "the adapter's first word after the restart")
         cause, uptime = self.status()
         self.assertLess(uptime, 10)
@@ -86,7 +86,7 @@ class DiWheelDrive(Breakdowns):
 
     def drive(self):
         self.board.send(0x201, motors(200_000))
-        self.board.wait(lambda: self.parts.duties and min(self.parts.duties[-1][1:]) > 0, 60, "movement")
+        self.board.wait(lambda: self.parts.duties and min(self.parts.duties[-1][1:]) > 0, 5, "movement")
 
     def expect_rest(self, events):
         """Power off and no duty, and no other duty until the program that starts next switches the power on again. What
@@ -119,13 +119,13 @@ class DiWheelDrive(Breakdowns):
 
     def test_streams_are_gone_and_can_be_asked_for_again(self):
         self.board.publish(GYRO, 20)
-        self.board.wait(lambda: len(self.board.of(0x608)) > 5, 60, "the gyroscope")
+        self.board.wait(lambda: len(self.board.of(0x608)) > 5, 10, "the gyroscope")
         self.breaks(INVALID_INSTRUCTION)
         back = time.monotonic()
         time.sleep(0.7)
         self.assertEqual(self.board.of(0x608, back), [], "published without a request")
         self.board.publish(GYRO, 20)
-        self.board.wait(lambda: len(self.board.of(0x608, back)) > 5, 60, "the gyroscope, asked for again")
+        self.board.wait(lambda: len(self.board.of(0x608, back)) > 5, 10, "the gyroscope, asked for again")
         self.drive()
 
     def test_a_level_that_hangs_is_missed(self):
@@ -156,7 +156,7 @@ class LightRing(Breakdowns):
         parts = Parts()
         parts.spi[1] = self.Lights()
         self.start("light_ring", parts)
-        self.board.wait(lambda: self.parts.events and self.parts.events[-1] == (OUTPUTS, b"\0"), 60, "outputs on")
+        self.board.wait(lambda: self.parts.events and self.parts.events[-1] == (OUTPUTS, b"\0"), 5, "outputs on")
         events, cause = self.breaks(INVALID_INSTRUCTION)
         self.assertEqual(events[0], (OUTPUTS, b"\1"), "blank")
         self.assertEqual(cause, USAGE_FAULT)

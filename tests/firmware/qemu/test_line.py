@@ -29,7 +29,7 @@ class Host(harness.Machine):
         self.relay = None        # a program that has the line instead
         self.thread(self._hear)
         self.thread(self.parts.serve, self.lines["parts"])
-        self.wait(lambda: self.said, 60, "the first CR")
+        self.wait(lambda: self.said, 10, "the first CR")
         self.said.clear()
 
     def _hear(self):
@@ -70,7 +70,7 @@ class Host(harness.Machine):
         """The answers to a line: those that are no frames."""
         seen = len(self.answers())
         self.write(text + "\r")
-        self.wait(lambda: len(self.answers()) >= seen + count, 60, f"the answer to {text!r}")
+        self.wait(lambda: len(self.answers()) >= seen + count, 10, f"the answer to {text!r}")
         return self.answers()[seen]
 
     def open(self):
@@ -102,7 +102,7 @@ class Line(harness.Case):
         self.assertEqual(host.ask("N"), "NDIWD")
         host.open()
         host.publish(GYRO, 20)
-        host.wait(lambda: len(host.frames(0x608)) >= 5, 60, "five samples")
+        host.wait(lambda: len(host.frames(0x608)) >= 5, 10, "five samples")
         self.assertEqual(host.frames(0x608)[-1][1], struct.pack("<3h", *GYRO_OUTPUT))
         self.assertEqual(host.ask("C"), "")
         time.sleep(0.1)
@@ -110,13 +110,13 @@ class Line(harness.Case):
         time.sleep(0.5)
         self.assertEqual(host.said[seen:], [], "a closed channel says nothing")
         self.assertEqual(host.ask("O"), "")
-        host.wait(lambda: host.frames(0x608, seen + 1), 60, "the samples go on: the board has not noticed")
+        host.wait(lambda: host.frames(0x608, seen + 1), 10, "the samples go on: the board has not noticed")
 
     def test_other_boards_are_heard_in_order(self):
         host = self.host
         host.open()
         self.assertEqual(host.send(PLAY, struct.pack("<2H", 200, 10_000)), "z")
-        host.wait(lambda: len(host.frames(FOREIGN)) + len(host.frames(FOREIGN_EXTENDED)) >= 200, 60, "all frames")
+        host.wait(lambda: len(host.frames(FOREIGN)) + len(host.frames(FOREIGN_EXTENDED)) >= 200, 20, "all frames")
         self.assertEqual(self.numbers(), list(range(200)))
         self.assertEqual(len(host.frames(FOREIGN_EXTENDED)), 50)
         self.assertEqual(host.ask("F"), "F00")
@@ -127,7 +127,7 @@ class Line(harness.Case):
         host = self.host
         host.open()
         host.publish(GYRO, 100, priority=0)
-        host.wait(lambda: len(host.frames(0x408)) >= 5, 60, "the gyroscope's first frames")
+        host.wait(lambda: len(host.frames(0x408)) >= 5, 10, "the gyroscope's first frames")
         self.assertEqual(host.send(PLAY, struct.pack("<2H", 1000, 700)), "z")
         flags = 0
         while not flags & 0x01:
@@ -146,9 +146,9 @@ class Line(harness.Case):
         self.assertEqual(numbers, sorted(set(numbers)), "in order, and none twice")
         self.assertEqual([host.ask("F"), host.ask("F")][1], "F00")
         seen = len(host.said)
-        host.wait(lambda: len(host.frames(0x408, seen)) >= 5, 60, "the board's samples, as before")
+        host.wait(lambda: len(host.frames(0x408, seen)) >= 5, 10, "the board's samples, as before")
         self.assertEqual(host.send(0x31D, b"\x02"), "z")
-        host.wait(lambda: host.frames(0x71D), 60, "what it says of refusals")
+        host.wait(lambda: host.frames(0x71D), 10, "what it says of refusals")
         lost = struct.unpack("<BBHHH", host.frames(0x71D)[0][1])[4]
         self.assertGreaterEqual(lost, 1000 - len(numbers))
         self.assertLess(lost, 1000 - len(numbers) + 50)  # and some of the gyroscope's
@@ -163,7 +163,7 @@ class Line(harness.Case):
         host.open()
         seen = len(host.said)
         self.assertEqual(host.send(PLAY, struct.pack("<2H", 500, 700)), "z")
-        host.wait(lambda: len(host.said) > seen + 200, 60, "200 lines")
+        host.wait(lambda: len(host.said) > seen + 200, 20, "200 lines")
         lines = host.said[seen + 1:]
         characters = sum(len(text) + 1 for _, text in lines)
         self.assertLess(characters / (lines[-1][0] - lines[0][0]), 1.3 * LINE, "the played line has no pace")
@@ -183,10 +183,10 @@ class Line(harness.Case):
         for garbage in (b"t2081A\r", b"t2089\r", b"\x00\x80\xff\r", b"t208\r", b"t2081ABt2081AB\r", b"x" * 600 + b"\r"):
             seen = len(host.answers())
             host.write(garbage)
-            host.wait(lambda: len(host.answers()) > seen, 60, repr(garbage))
+            host.wait(lambda: len(host.answers()) > seen, 10, repr(garbage))
             self.assertEqual(host.answers()[-1], "\a")
         host.publish(GYRO, 20)
-        host.wait(lambda: host.frames(0x608), 60, "a sample")
+        host.wait(lambda: host.frames(0x608), 10, "a sample")
         host.write("t208")  # this host ends here; the next one begins
         self.assertEqual(host.ask("\rC", 2), "\a")
         for command, answer in (("V", "V1110"), ("S6", ""), ("Z1", ""), ("O", "")):
@@ -198,19 +198,19 @@ class Line(harness.Case):
         self.host.publish(GYRO, 20)
         self.code = 0
         self.host.write(b"t20\x02\xff\x00")
-        self.assertEqual(self.host.process.wait(60), 0)
+        self.assertEqual(self.host.process.wait(10), 0)
 
     def test_connect_is_obeyed_on_a_closed_line(self):
         self.code = 0
         self.host.write(b"\x02\xff\x00")
-        self.assertEqual(self.host.process.wait(60), 0)
+        self.assertEqual(self.host.process.wait(10), 0)
 
     def test_levels_do_not_notice(self):
         """The stack of the line's thread, and the board's own samples at their period under a storm."""
         host = self.host
         host.open()
         host.publish(ACCEL, 50, priority=0)
-        host.wait(lambda: len(host.frames(0x409)) >= 3, 60, "the first samples")
+        host.wait(lambda: len(host.frames(0x409)) >= 3, 10, "the first samples")
         self.assertEqual(host.send(PLAY, struct.pack("<2H", 3000, 1000)), "z")
         host.write("Z1\rV\rF\rT1234567881122334455667788\r")
         time.sleep(2)
@@ -248,7 +248,7 @@ class Tool(harness.Case):
 
     def tool(self, *arguments, code=0):
         result = subprocess.run([AMIROCTL, "--bus", f"slcan:{self.path}", *arguments], capture_output=True, text=True,
-                                timeout=120, check=False)
+                                timeout=60, check=False)
         self.assertEqual(result.returncode, code, result.stdout + result.stderr)
         return result
 
@@ -256,7 +256,7 @@ class Tool(harness.Case):
         def known():
             once = [AMIROCTL, "--bus", f"slcan:{self.path}", "once", "gyro", "--wait"]
             return subprocess.run(once, capture_output=True, timeout=120, check=False).returncode == 0
-        waiting.until(known, "the parts are known", 60)
+        waiting.until(known, "the parts are known")
         out = self.tool("once", "gyro", "--wait").stdout
         self.assertIn("gyroscope", out)
         self.tool("publish", "accelerometer", "100ms")

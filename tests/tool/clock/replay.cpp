@@ -611,19 +611,38 @@ TEST_CASE("replay: on a bus from which nothing leaves, one travel waits, and its
   CHECK((sent[5].frame.id == travels.id && cli::is_rest(sent[5].frame)));
 }
 
-TEST_CASE("replay: a travel that the bus has kept back is not begun late") {
+TEST_CASE("replay: one travel does not wait longer than a set point of motors may") {
   const Silence silence;
   World world{1};
   PlayedBus::Conditions conditions;
-  const Moment begin = World::start + 350ms;
-  conditions.stuck = {{begin, begin + 400ms}};
+  conditions.stuck = {{World::start, World::start + 60s}};
+  std::vector<log::Entry> entries{{base::Time{0s}, travels, std::uint16_t{0}}};
+  for (int i = 1; i < 4; ++i)
+    entries.emplace_back(base::Time{i * 100ms}, can::Frame{0x601, 4, {1}}, std::uint16_t{0});
+  entries.emplace_back(base::Time{30s}, can::Frame{0x601, 4, {1}}, std::uint16_t{0});
+  OnOneBus<PlayedLog> replayed{world, conditions, entries, std::size_t{1}};
+  CHECK_THROWS_AS(replayed.play(), cli::Exit);
+  CHECK(world.now() < World::start + client::longest_without_set_point + 250ms);
+  CHECK(replayed.player->end_after_all() == std::vector{std::string{"can0: "} + cli::still_travelling});
+  CHECK(replayed.sent().size() == 5);
+}
+
+TEST_CASE("replay: behind a travel that the bus has kept back, the log goes on by so much later") {
+  const Silence silence;
+  World world{1};
+  PlayedBus::Conditions conditions;
+  conditions.frame_time = 200ms;
   std::vector<log::Entry> entries;
-  for (int i = 0; i < 20; ++i) entries.emplace_back(base::Time{i * 100ms}, travels, std::uint16_t{0});
+  for (int i = 0; i < 5; ++i)
+    entries.emplace_back(base::Time{0s}, can::Frame{0x601, 4, {1}}, std::uint16_t{0});
+  entries.emplace_back(base::Time{10ms}, travels, std::uint16_t{0});
+  entries.emplace_back(base::Time{510ms}, travels, std::uint16_t{0});
   OnOneBus<PlayedLog> replayed{world, conditions, entries, std::size_t{1}};
   replayed.play();
   const auto& sent = replayed.sent();
   REQUIRE(sent.size() == entries.size());
-  for (std::size_t i = 1; i < sent.size(); ++i) CHECK(sent[i].taken >= sent[i - 1].left);
+  CHECK(sent[5].taken >= World::start + 1s);  // all before it have left
+  CHECK(sent[6].taken - sent[5].taken >= 490ms);
 }
 
 }  // namespace tool_clock_replay_test

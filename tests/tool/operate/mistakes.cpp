@@ -144,6 +144,7 @@ constexpr Row rows[] = {
     {R"({"rate": "odometry", "below": 5, "window": "1s"})",
      R"({"rate": "odometry", "below": 1000000001, "window": "61s"})"},
     {R"("above": "72.5%")", R"("above": "100%")"},
+    {R"("above": "72.5%")", R"("above": "99.96%")"},
     {R"("above": "72.5%")", R"("above": "99.9%")"},
     {R"("above": "72.5%")", R"("below": "100%")"},
     {R"("above": "72.5%")", R"("below": "0.1%")"},

@@ -192,7 +192,7 @@ TEST_CASE("JSON text: a line is written to where there is room for it, however l
   for (const log::Entry& entry : entries) {
     const std::string line = line_of(text, entry);
     REQUIRE(line.ends_with("}\n"));
-    for (std::size_t left = 0; left < 2 * line.size(); ++left) {
+    for (std::size_t left = 0; left < line.size() + 64; ++left) {
       log::Bytes out;
       out.zeros(room - left);
       const char* const before = out.view().data();

@@ -26,7 +26,7 @@ class Robot:
         self.loses = 0           # so many of its next set points
         self.silent = False      # says nothing
         self.mumbles = False     # says that it is idle, but never where it is
-        self.repeats_idle = False  # says that it is idle behind each update, too
+        self.repeats_idle = False  # says that it is idle behind each update, too, and both at once
         self.knows_who = True    # and answers {S,WHO},
         self.who_late = 0.0      # so many seconds later
         self.knows_compass = True  # and {C,number}
@@ -242,13 +242,9 @@ class Central:
             self.find()
             for index, robot in enumerate(self.listed):
                 text = robot.say(now) if robot.linked else ""
-                heard = ""
-                while text:
-                    if robot.is_heard():
-                        heard += self.serve_text(index, robot, text[:20])
-                    text = text[20:]
-                if heard:
-                    self.write(heard)
+                heard = [self.serve_text(index, robot, text[at:at + 20]) for at in range(0, len(text), 20) if robot.is_heard()]
+                for part in ["".join(heard)] if robot.repeats_idle else heard:
+                    self.write(part)
 
     def serve_text(self, index, robot, text):
         """A packet of a robot as it goes to the server."""

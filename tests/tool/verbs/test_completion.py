@@ -7,7 +7,7 @@ import unittest
 
 import harness
 import operate_cases
-from realtime import RealTime
+from realtime import MOST_LATE
 
 OTHER = os.path.join(harness.SOURCE, "examples", "other-robot", "topics.json")
 
@@ -100,7 +100,7 @@ class Words(harness.Case):
 
 class Requests(operate_cases.Operating, Words):
     # An operator that does not answer within 300 ms is left out.
-    had_time = RealTime.had_time
+    most_late = MOST_LATE
 
     def test_where_a_request_leads(self):
         """Asked of the operator that runs, of the bus that is named or of any; there may be none."""

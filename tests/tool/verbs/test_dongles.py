@@ -6,12 +6,12 @@ import time
 from harness import Case, main, waiting
 from played_central import Central, Robot
 from played_dongles import BaseFirmware, Noise, Silent, Thesis
-from realtime import RealTime
+from realtime import MOST_LATE
 
 
 class Dongles(Case):
     # Each answer has its time, in which the tool, the terminal and the dongle that is played are late one after the other.
-    had_time = RealTime.had_time
+    most_late = MOST_LATE
 
     def play(self, kind, *names):
         self.robots = [Robot(name, pose=(0.4 + 0.3 * i, 0.5, 0.0)) for i, name in enumerate(names or ["AVR"])]

@@ -8,7 +8,7 @@ import time
 
 from harness import Case, main, waiting
 from played_adapter import WithAdapter
-from realtime import RealTime
+from realtime import MOST_LATE
 
 FORWARDS = "201#50C3000000000000"
 BACKWARDS = "-5cm/s"
@@ -19,7 +19,7 @@ OTHER = "another program commands motors: " + FORWARDS
 
 class Drive(Case):
     # Who begins listens for 150 ms to others, which repeat what they command each 100 ms.
-    had_time = RealTime.had_time
+    most_late = MOST_LATE
 
     def driving(self, *arguments):
         """A drive that goes on: one that begins now could have heard it."""

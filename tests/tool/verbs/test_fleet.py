@@ -11,14 +11,14 @@ import time
 
 from harness import AMIROCTL, Case, main, waiting
 from played_central import Central, Robot
-from realtime import RealTime
+from realtime import MOST_LATE
 
 
 class Line(Case):
     """With a central and two robots at the place where the verbs look for one. What a robot has not heard is said again after a
     moment, in which the tool, the terminal and the central that is played are late one after the other."""
 
-    had_time = RealTime.had_time
+    most_late = MOST_LATE
 
     def setUp(self):
         super().setUp()

@@ -4,7 +4,7 @@ import json
 import os
 
 from harness import SOURCE, Case, main
-from realtime import RealTime
+from realtime import MOST_LATE
 
 HEAD = "BU_: Sender\n"
 RATE = 'BA_DEF_ "Baudrate" INT 0 1000000;\nBA_DEF_DEF_ "Baudrate" 0;\nBA_ "Baudrate" {};\n'
@@ -20,7 +20,7 @@ LOG = "".join(f"({1 + number / 10}) {frame}\n" for number, frame in enumerate((
 
 class Interfaces(Case):
     # Who begins to drive listens for 150 ms to others, which repeat what they command each 100 ms.
-    had_time = RealTime.had_time
+    most_late = MOST_LATE
 
     def setUp(self):
         super().setUp()

@@ -334,7 +334,7 @@ class AnOwnerThatOnlyKeepsTheLine(Joined):
 
     def test_a_paused_robot_is_paused_again_behind_a_drive(self):
         self.keep()
-        self.assertRegex(self.run_tool("robots", "--listen", "1s")[0], "AVR .* idle")  # the owner has heard its updates
+        self.assertRegex(self.run_tool("robots", "--listen", "3s")[0], "AVR .* idle")  # the owner has heard its updates
         self.assertEqual(self.tool("pause", "AVR")[0], "AVR: paused\n")
         self.tool("goto", "AVR", "0", "5")
         self.assertTrue(self.avr.paused)

@@ -111,7 +111,7 @@ class Asked(WithAdapter, Operating):
         self.assertEqual({x_of(frame) for frame in frames}, {20_000, 10_000, 0})
         limited = len([frame for frame in frames if x_of(frame) == 20_000])
         self.assertLess(limited, 8, frames)
-        self.assertGreaterEqual(limited + self.spare.late / 0.1, 4, frames)  # one that is held up leaves out a turn
+        self.assertGreaterEqual(limited + self.spare.slack / 0.1, 4, frames)  # one that is held up leaves out a turn
         _, err = self.interrupt(operator)
         self.assertRegex(err, "[0-9]+ set points? passed on, [0-9]+ set points? limited")
 
@@ -162,7 +162,7 @@ class Asked(WithAdapter, Operating):
         self.assertEqual(max(values), 10_000)
         for (before, a), (after, b) in zip(frames, frames[1:]):
             # By the clock of the bus: of two, the first may have got there late.
-            self.assertLessEqual(x_of(b) - x_of(a), 20_000 * (after - before + self.spare.late) + 1500)
+            self.assertLessEqual(x_of(b) - x_of(a), 20_000 * (after - before + self.spare.slack) + 1500)
         self.assertEqual(values[-1], 0)
 
     def test_who_may_not_command_is_refused_and_rest_never_is(self):

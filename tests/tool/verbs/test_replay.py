@@ -100,14 +100,14 @@ class Replaying(Case):
             out, err = self.replayed(log, "--speed", speed)
             self.assertEqual([frame for _, frame in out], ["608#01", "608#02", "608#03", "608#04"])
             for (when, _), wanted in zip(out, (0, 0.2, 0.2, 1)):
-                self.assertAlmostEqual(when - out[0][0], wanted * factor, delta=0.1 + self.spare.late)
+                self.assertAlmostEqual(when - out[0][0], wanted * factor, delta=0.1 + self.spare.slack)
             number, unit = re.search(r"sent 4 frames in (\d+(?:\.\d+)?)(m?s)", err).groups()
             lasted = float(number) * (0.001 if unit == "ms" else 1)
             self.assertGreaterEqual(lasted, factor)
             self.assertLess(lasted, factor + 5)
         out, err = self.replayed(log, "--speed", "max")
         self.assertEqual(len(out), 4)
-        self.assertLess(out[-1][0] - out[0][0], 0.5 + self.spare.late)
+        self.assertLess(out[-1][0] - out[0][0], 0.5 + self.spare.slack)
         number, unit = re.search(r"sent 4 frames in (\d+(?:\.\d+)?)([mun]?s)", err).groups()
         self.assertLess(float(number) * (1 if unit == "s" else 0.001), 5)  # by itself: its start and the recorder's count for nothing
 
@@ -127,7 +127,7 @@ class Replaying(Case):
         out, err = self.replayed(log)
         self.assertEqual([frame for _, frame in out], [f"608#0{i}" for i in range(1, 6)])
         self.assertIn("2 with a time before the last", err)
-        self.assertAlmostEqual(out[4][0] - out[3][0], 0.1, delta=0.05 + self.spare.late)
+        self.assertAlmostEqual(out[4][0] - out[3][0], 0.1, delta=0.05 + self.spare.slack)
 
     def test_parts_of_a_log(self):
         lines = [(10 + i / 10, f"608#{i:02X}") for i in range(50)] + [(14.95, "609#00"), (14.96, "209#00")]
@@ -253,7 +253,7 @@ class Replaying(Case):
         # the other, however long a busy machine took between them.
         self.assertEqual([frame for _, frame in gyro], [f"508#{i % 4:02X}0000000000" for i in range(len(gyro))])
         began, ended = [at for at, frame in bus if int(frame[:3], 16) & 0x4FF == 0x008][:2]
-        self.assertAlmostEqual(len(gyro), (ended - began) / 0.1, delta=1.5 + self.spare.late / 0.1)
+        self.assertAlmostEqual(len(gyro), (ended - began) / 0.1, delta=1.5 + self.spare.slack / 0.1)
         gaps = [later - earlier for (earlier, _), (later, _) in zip(gyro, gyro[1:])]
         self.assertAlmostEqual(statistics.median(gaps), 0.1, delta=0.05)
         self.assertEqual([frame for _, frame in out[len(gyro):]], ["602#0000000000000000", "603#00000000000000FF"])
@@ -357,7 +357,7 @@ class Replaying(Case):
         self.assertEqual(replay.returncode, 0, err)
         times = [time for time, _ in self.lines("paused.log")]
         self.assertEqual(len(times), 3)
-        self.assertGreater(times[2] - times[1], 0.79 - self.spare.late)  # the second may have got there late
+        self.assertGreater(times[2] - times[1], 0.79 - self.spare.slack)  # the second may have got there late
 
     def test_usage(self):
         log = self.write_log((1, "608#01"))

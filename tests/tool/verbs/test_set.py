@@ -46,8 +46,8 @@ class Set(Case):
         self.assertGreater(len(times), 50)
         # No drift: the last one is near to its turn, whatever came between; turns at the end may be left out.
         lasted = (times[-1] - times[0]) / 1e9
-        self.assertLess(lasted, 0.99 + 0.2 + self.spare.late, err)
-        self.assertGreater(lasted, 0.99 - 0.2 - 0.01 * left_out - self.spare.late, err)
+        self.assertLess(lasted, 0.99 + 0.2 + self.spare.slack, err)
+        self.assertGreater(lasted, 0.99 - 0.2 - 0.01 * left_out - self.spare.slack, err)
 
     def test_without_an_end_until_it_is_interrupted(self):
         self.start_sim()

@@ -49,7 +49,7 @@ class SimMessages(Case):
         seen = {t["topic"]: t for t in json.loads(out)["buses"][0]["topics"]}
         for name, period in (("Fast", 10e6), ("Pages", 50e6), ("Group", 20e6)):
             self.assertEqual(seen[name]["period_ns"], period)
-            late = self.spare.late * 1e9  # of the first or the last one
+            late = self.spare.slack * 1e9  # of the first or the last one
             self.assertAlmostEqual(seen[name]["mean_ns"], period, delta=period / 50 + late / (seen[name]["count"] - 1))
             # A machine that pauses makes a gap, and all comes late; that none is left out is tests/sim/messages's to show.
             self.assertLessEqual(seen[name]["missing"], 3 if name == "Fast" else 1)
@@ -69,11 +69,11 @@ class SimMessages(Case):
         _, err = self.run_tool("set", "--spec", SPEC, "--bus", "sim", "Odd", "End=77", "--every", "20ms", "--for", "200ms")
         # On a busy machine some turns are left out, and said.
         sent = 10 - sum(int(count) for count in re.findall(r"(\d+) frames? w(?:as|ere) not sent", err))
+        self.assertGreaterEqual(sent + self.spare.slack / 0.02, 9)
         ours = []
         while len(ours) < min(9, sent):  # what was sent last is on its way to the listener
             row = json.loads(listener.stdout.readline())
             ours += [row] if row.get("fields", {}).get("End") == 77 else []
-        self.assertGreater(sent, 0)
         self.interrupt(listener)
         self.assertEqual(ours[0]["data"], "00" * 9 + "4D" + "0000")
         self.assertEqual(ours[0]["fd"], {"brs": False, "esi": False})

@@ -331,13 +331,13 @@ TEST_CASE("slcan: an adapter that refuses is distinguished by what it refuses") 
   }
   SECTION("something that is no adapter talks") {
     Device device([](Device&, char c) { return c == '\r' ? std::string{"login: \r\n"} : std::string{}; });
-    const auto told = failure(device.path(), patient_for(5s));
+    const auto told = failure(device.path(), patient_for(2s));
     CHECK_THAT(told.what, Contains("is not SLCAN"));
     CHECK_THAT(told.remedy, Contains("57600"));
   }
   SECTION("the wrong speed of the line") {
     Device device([](Device&, char c) { return c == '\r' ? std::string{"\xF8\x80\x80\r"} : std::string{}; });
-    CHECK_THAT(failure(device.path(), patient_for(5s)).what, Contains("is not SLCAN"));
+    CHECK_THAT(failure(device.path(), patient_for(2s)).what, Contains("is not SLCAN"));
   }
   SECTION("it goes while it is opened") {
     Device device(by_letter({{'\r', "\r"}}));

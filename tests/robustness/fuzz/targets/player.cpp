@@ -278,9 +278,10 @@ class Scene {
     fuzz::expect(on_buses >= counted && on_buses <= counted + buses.size() + (left ? 1 : 0),
                  "nothing else goes out but motors at rest");
   }
-  /// How long the frames take on a bus.
+  /// How long the frames take on a bus, each of which may wait for the one before, which is looked at each
+  /// millisecond.
   [[nodiscard]] Duration busy() const {
-    return static_cast<std::int64_t>(expected_.entries + 2) * (conditions_.frame_time + 5us);
+    return static_cast<std::int64_t>(expected_.entries + 2) * (conditions_.frame_time + 5us + 1100us);
   }
 
   static void judge_rest(PlayedBus& bus) {
