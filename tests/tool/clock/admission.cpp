@@ -182,6 +182,33 @@ TEST_CASE("admission: what is heard may leave hardly any time, and is computed t
   CHECK(text.find("exit") == std::string::npos);
 }
 
+TEST_CASE(
+    "admission: on a slow bus a frame of anything else is hardly any load; short names have a narrow "
+    "column") {
+  std::vector<protocol::Topic> topics{amiro::catalogue.topics.begin(), amiro::catalogue.topics.end()};
+  const auto gyroscope = std::find_if(topics.begin(), topics.end(),
+                                      [](const protocol::Topic& topic) { return topic.name == "gyroscope"; });
+  REQUIRE(gyroscope != topics.end());
+  gyroscope->name = "gyro";
+  gyroscope->aliases = {};
+  const protocol::Catalogue catalogue{amiro::catalogue.robot, 10'000, amiro::catalogue.boards, topics};
+  World world{1};
+  PlayedBus bus{world, {}};
+  const std::vector<std::string_view> words{"publish", "gyro", "1s"};
+  const auto command = cli::words::CommandParser{catalogue}.parse_line(words);
+  REQUIRE(command.ok());
+  cli::RefusalWatch refusals{catalogue, "publish", cli::Confirm::yes};
+  const cli::AdmissionOptions explained{.force = false, .explain = true, .listen = 100ms};
+  Captured out{STDOUT_FILENO};
+  const Leaving left = leaving([&] { cli::admit(catalogue, bus, *command, explained, refusals); });
+  const std::string text = out.text();
+  CAPTURE(text, left.text);
+  CHECK_FALSE(left.code);
+  CHECK_THAT(text, Catch::StartsWith("ID        MESSAGE     PERIOD   DEADLINE  BITS "));
+  // 111 bits of 10,000 a second, and 135 bits once an hour.
+  CHECK_THAT(text, Catch::Contains("\nload 1.1 % of 10000 bit/s at worst; 0 identifiers heard within "));
+}
+
 // --- what becomes of a behaviour ---
 
 can::Frame behaviour(int active, int ended, int more = 0) {

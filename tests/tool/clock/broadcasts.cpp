@@ -192,6 +192,8 @@ TEST_CASE("broadcasts: turns that a stop takes are late, and none is counted beh
                          Row{580ms, 720ms + 1ns, 4, 1},           // and no longer: it begins again
                          Row{510ms, 1200ms, 3, 2},                // 0.5 and 1 s
                          Row{5s, 1s, 4, 0},                       // it is over
+                         Row{1400ms, 700ms, 3, 1},                // 1.5 s; 2 s is the end itself
+                         Row{1580ms, 800ms, 4, 1},                // 1.5 s, of which a part is sent
                          Row{1400ms, 700ms, 4, 1, 2s + 1ns},      // 1.5 s; 2 s is before the end
                          Row{1400ms, 1200ms, 3, 2, 2s + 1ns}}) {  // 1.5 and 2 s
     INFO(row.stop.count() << ", " << row.lasting.count());
@@ -202,6 +204,46 @@ TEST_CASE("broadcasts: turns that a stop takes are late, and none is counted beh
     CHECK(counted.broadcasts.counts().waited == 0);
     CHECK(counted.rounds[0] == row.rounds);
   }
+}
+
+TEST_CASE("broadcasts: what is sent once is over with its last frame, and did not wait if it is sent again") {
+  Counted counted;
+  counted.begin(0);
+  counted.advance();
+  while (counted.broadcasts.unfinished() != nullptr) {
+    counted.now = counted.broadcasts.next_event();
+    counted.advance();
+  }
+  CHECK(counted.now == World::start + 3 * j1939::broadcast_distance);
+  CHECK(counted.broadcasts.next_event() <= counted.now);
+  counted.begin(0);
+  CHECK(counted.broadcasts.counts().waited == 0);
+  CHECK(counted.broadcasts.size() == 1);
+}
+
+TEST_CASE(
+    "broadcasts: what the bus does not take is tried again 5 ms later, and is late since the first time") {
+  Counted counted;
+  counted.begin(0);
+  int tries = 0;
+  const auto next_after = [&](Duration time) {
+    counted.now = World::start + time;
+    counted.broadcasts.advance(counted.now, [&](const can::AnyFrame&) {
+      ++tries;
+      return std::optional<Moment>{};
+    });
+    return counted.broadcasts.next_event();
+  };
+  CHECK(next_after(0ms) == World::start + 5ms);
+  CHECK(next_after(5ms - 1ns) == World::start + 5ms);
+  CHECK(tries == 1);
+  CHECK(next_after(5ms) == World::start + 10ms);
+  CHECK(tries == 2);
+  CHECK(counted.broadcasts.held_up_since() == World::start);
+  counted.now = World::start + 10ms;
+  counted.advance();
+  CHECK(counted.rounds[0] == 1);
+  CHECK_FALSE(counted.broadcasts.held_up_since());
 }
 
 TEST_CASE("broadcasts: only another message of the source makes one wait") {
@@ -315,6 +357,12 @@ TEST_CASE("broadcasts: what was late, waited, met another or was cut off is said
   cut.interrupt(World::start + 80ms, SIGINT);
   CHECK(said_of({command(0, 1), command(1, 1)}, cut) ==
         "set: Vehicle was not sent to its end\nset: Trouble was not sent\nfine");
+  World cut_alone{1};
+  cut_alone.interrupt(World::start + 80ms, SIGINT);
+  CHECK(said_of({command(0, 1)}, cut_alone) == "set: Vehicle was not sent to its end\nfine");
+  World between{1};  // the first is whole, and the second has not begun
+  between.interrupt(World::start + 170ms, SIGINT);
+  CHECK(said_of({command(0, 1), command(1, 1)}, between) == "set: Trouble was not sent\nfine");
   const std::string first =
       "set: another node broadcasts from source 2A during Vehicle, so listeners may drop both\n";
   PlayedBus::Conditions conditions;

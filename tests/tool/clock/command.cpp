@@ -1,7 +1,13 @@
 // Drives and their set points, on a bus and a clock that are made of a seed: stops of the program, a bus that
 // is full, stuck, down or away, signals, other programs. The robot does only what is commanded now, and rests
 // at the end.
+#include <algorithm>
 #include <csignal>
+#include <cstdint>
+#include <functional>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include "ocm/protocol/codec.hpp"
 #include "ocm/topics/amiro.hpp"
@@ -361,6 +367,47 @@ TEST_CASE("drive: no set point follows a stop that came before it was due, whate
   CHECK(cli::is_rest(bus.sent().back().frame));
 }
 
+TEST_CASE("drive: no set point follows a refusal of the motors that came before it was due") {
+  const auto stop_at = World::start + 450ms;
+  World world{1};
+  world.stop(stop_at, 100ms);
+  PlayedBus::Conditions conditions;
+  conditions.incoming = {{stop_at + 1ms, {.id = 0x123, .dlc = 8}},
+                         {stop_at + 2ms, {.id = 0x71D, .dlc = 8, .data = {0x01, 0x08, 0x01}}}};
+  PlayedBus bus{world, conditions};
+  const Leaving left = leaving([&] {
+    Timeline timeline{bus, amiro::catalogue, "drive", Timeline::Others::refused, cli::Confirm::yes, {}};
+    timeline.carry_out(drive(0s));
+    static_cast<void>(timeline.wait_for_end());
+  });
+  CHECK(left.code == cli::exit_failure);
+  CHECK_THAT(left.text, Catch::Contains("drive: di_wheel_drive refuses motors: not_served"));
+  REQUIRE(bus.sent().size() > 4);
+  for (const auto& each : bus.sent()) CHECK((each.taken < stop_at || cli::is_rest(each.frame)));
+  CHECK(cli::is_rest(bus.sent().back().frame));
+}
+
+TEST_CASE("drive: where there is always a frame a set point goes after 10 ms all the same") {
+  const Silence silence;
+  const auto stop_at = World::start + 1050ms;
+  const auto goes_on = stop_at + 100ms;
+  World world{1};
+  world.stop(stop_at, goes_on - stop_at);
+  PlayedBus::Conditions conditions;
+  conditions.incoming.assign(10'000, {stop_at + 1ms, {.id = 0x123, .dlc = 8}});  // 2 us and more each
+  PlayedBus bus{world, conditions};
+  Timeline timeline{bus, amiro::catalogue, "drive", Timeline::Others::refused, cli::Confirm::no, {}};
+  timeline.carry_out(drive(0s));
+  CHECK(timeline.wait(goes_on + 40ms));
+  const auto& sent = bus.sent();
+  const auto next =
+      std::find_if(sent.begin(), sent.end(), [&](const auto& each) { return each.taken >= goes_on; });
+  REQUIRE(next != sent.end());
+  CHECK_FALSE(cli::is_rest(next->frame));
+  CHECK(next->taken - goes_on >= 10ms);  // it looked at what had come
+  CHECK(next->taken - goes_on < 10500us);
+}
+
 /// A bus from which no frame leaves for so long, from the beginning.
 PlayedBus::Conditions stuck_for(Duration lasting) {
   PlayedBus::Conditions conditions;
@@ -389,6 +436,36 @@ TEST_CASE("drive: no set point waits behind the question what the boards do by t
     CHECK(sent[1].frame == drive(1s).frames.front());
     CHECK(sent[1].taken >= sent[0].left + 40ms);  // in which a board answers
     CHECK(cli::is_rest(sent.back().frame));
+  }
+}
+
+TEST_CASE("drive: it begins 40 ms after a question that was held up has left, or hardly later") {
+  const Silence silence;
+  for (Duration lasting = 300ms; lasting < 304ms; lasting += 200us) {
+    INFO("stuck for " << lasting.count() << " ns");
+    World world{1};
+    PlayedBus bus{world, stuck_for(lasting)};
+    CHECK_FALSE(drive_a_second(world, bus));
+    const auto& sent = bus.sent();
+    REQUIRE(sent.size() > 2);
+    CHECK(sent[0].frame == question());
+    CHECK(sent[1].taken - sent[0].left < 41ms + 200us);
+  }
+}
+
+TEST_CASE("drive: set points that come while the question is held up are as old as they are") {
+  const Silence silence;
+  can::Frame theirs = drive(1s).frames.front();
+  theirs.data[0] ^= 1;
+  // It begins at 440 ms, and looks back for 150 ms.
+  for (const auto& [at, refused] : {std::pair{200ms, false}, std::pair{350ms, true}}) {
+    INFO("at " << at.count() << " ms");
+    World world{1};
+    auto conditions = stuck_for(400ms);
+    conditions.incoming = {{World::start + at, theirs}};
+    PlayedBus bus{world, conditions};
+    CHECK(drive_a_second(world, bus) == refused);
+    CHECK((bus.sent().size() == 1) == refused);
   }
 }
 
@@ -581,6 +658,30 @@ TEST_CASE("set: after a stop nothing is sent behind the end of what is sent agai
   }
 }
 
+TEST_CASE("set: at its end what others send is handed on, but not the answer to its own question") {
+  constexpr std::uint32_t gyroscope = 0x608, light_ring_status = 0x757;
+  const std::vector<std::string_view> words{"led", "1", "red"};
+  const auto led = cli::words::CommandParser{amiro::catalogue}.parse_line(words);
+  REQUIRE(led.ok());
+  PlayedBus::Conditions conditions;
+  // While it listens for a refusal, and behind its question.
+  conditions.incoming = {{World::start + 50ms, {.id = gyroscope, .dlc = 6}},
+                         {World::start + 150ms, {.id = gyroscope, .dlc = 6}},
+                         {World::start + 160ms, {.id = light_ring_status, .dlc = 8}}};
+  for (const bool hands_on : {true, false}) {
+    World world{1};
+    PlayedBus bus{world, conditions};
+    std::vector<std::uint32_t> heard;
+    std::function<void(const can::Received&)> on_receive;
+    if (hands_on) on_receive = [&](const can::Received& received) { heard.push_back(received.frame.id); };
+    Timeline timeline{bus, amiro::catalogue, "set", Timeline::Others::allowed, cli::Confirm::yes, on_receive};
+    timeline.carry_out(*led);
+    CHECK(timeline.finish());
+    CHECK((world.now() - World::start) / 1ms == 160);
+    CHECK(heard == std::vector<std::uint32_t>(hands_on ? 2 : 0, gyroscope));
+  }
+}
+
 /// What is said of a command that is carried out, to its end.
 std::string said_of(const client::Command& command, PlayedBus::Conditions conditions,
                     std::optional<std::pair<Moment, Duration>> stop = {}) {
@@ -639,6 +740,9 @@ TEST_CASE("set: what was not sent is counted and said, with the reason") {
           "rate the same?\n";
   CHECK(stuck(150ms, 10s) == five + cli::still_moving + "\n" + remedy);
   CHECK(stuck(0ms, 10s) == five + "no set point has reached the robot\n" + remedy);
+  // It is given up at 700 ms; the rest may leave within a second.
+  CHECK(stuck(150ms, 850ms) == five + "the motors were set to zero\n" + remedy);
+  CHECK(stuck(150ms, 1700ms) == five + cli::still_moving + "\n" + remedy);
 }
 
 TEST_CASE("drive: of a script whose program was stopped, whenever that was, one step at most is late") {

@@ -88,6 +88,8 @@ struct Drive {
     Timeline timeline{bus, amiro::catalogue, "drive", Timeline::Others::refused, cli::Confirm::no, {}};
     REQUIRE(timeline.listen_first());
     const PadDrive::End end = drive.run(pad, timeline);
+    // Without finish(), too.
+    if (const auto driven = sent(); !driven.empty()) CHECK(cli::is_rest(driven.back().frame));
     static_cast<void>(timeline.finish());
     return end;
   }

@@ -76,6 +76,17 @@ TEST_CASE("refusals: of one frame the refusal is the end, of several all may be 
   CHECK(both.watch.refused().size() == 2);
 }
 
+TEST_CASE("refusals: of one frame that is refused already no other refusal is listened for") {
+  Bench bench{{}};
+  bench.watch.prepare(bench.bus, led());
+  bench.watch.sent(led());
+  CHECK(bench.watch.take({{}, frame(light_bad_length)}));
+  const Moment begin = bench.world.now();
+  bench.watch.listen(bench.bus);
+  CHECK(bench.world.now() - begin < 1ms);
+  CHECK(bench.watch.refused().size() == 1);
+}
+
 TEST_CASE("refusals: what could be asked for instead goes in place of a remedy") {
   Bench bench{{{20ms, light_bad_length}}};
   CHECK(bench.listens(led()) == 20);

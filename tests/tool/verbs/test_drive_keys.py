@@ -57,7 +57,12 @@ class Keys(harness.Case):
                 self.shown += os.read(self.primary, 4096)
             elif ended:
                 self.fail(f"{text} was not shown: {self.process.communicate()[1]}")
-        self.shown = self.shown.partition(text)[2]
+        before, _, self.shown = self.shown.partition(text)
+        return before
+
+    def next_line(self):
+        """What it draws next, up to what it says of its keys."""
+        return self.shows(b"   arrows drive").rpartition(b"\x1b[K")[2]
 
     def hold(self, key, seconds):
         """As a terminal does: at once, after half a second, and then 25 times a second."""
@@ -78,9 +83,10 @@ class Keys(harness.Case):
 
     def test_it_waits_between_two_looks_at_the_keys(self):
         process = self.drive()
-        before = self.processor_time(process)
+        before, waits = self.processor_time(process), self.waits(process)
         time.sleep(1)  # over which its processor time is taken
         self.assertLess(self.processor_time(process) - before, 0.3)  # without a wait it is all there is
+        self.assertLess(self.waits(process) - waits, 500)  # it looks fifty times a second
         while select.select([self.primary], [], [], 0)[0]:
             self.shown += os.read(self.primary, 4096)
         self.assertNotIn(b"\x1b[K", self.shown)  # nothing has changed, so that nothing is drawn
@@ -92,6 +98,12 @@ class Keys(harness.Case):
         with open(f"/proc/{process.pid}/stat", encoding="ascii") as file:
             fields = file.read().rsplit(")", 1)[1].split()
         return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+    @staticmethod
+    def waits(process):
+        """How often it has waited so far."""
+        with open(f"/proc/{process.pid}/status", encoding="ascii") as file:
+            return next(int(line.split()[1]) for line in file if line.startswith("voluntary_ctxt_switches:"))
 
     def test_drives_while_a_key_is_held(self):
         process = self.drive()
@@ -195,6 +207,33 @@ class Keys(harness.Case):
         self.shows(b"no faster")
         os.write(self.primary, b"q")
         process.communicate(timeout=60)
+
+    def test_a_limit_of_one_direction_counts(self):
+        with open(os.path.join(harness.SOURCE, "spec", "topics.json"), encoding="utf-8") as file:
+            spec = json.load(file)
+        motors, = (topic for topic in spec["topics"] if topic["name"] == "motors")
+        fields = motors["frames"][0]["fields"]
+        path = os.path.join(self.folder, "one_way.json")
+        for field, limits, what in ((0, [-1, 0.2], "50cm/s"), (0, [-0.2, 1], "-50cm/s"),
+                                    (1, [-1, 0.5], "45deg/s"), (1, [-0.5, 1], "-45deg/s")):
+            with self.subTest(what=what):
+                fields[0]["range"], fields[1]["range"] = [-1, 1], [-1, 1]
+                fields[field]["range"] = limits
+                with open(path, "w", encoding="utf-8") as file:
+                    json.dump(spec, file)
+                _, err = self.run_tool("--spec", path, "drive", "--keys", "50cm/s", "45deg/s", code=2)
+                self.assertIn(f"drive: --keys: '{what}' is out of range", err)
+
+    def test_what_a_key_has_done_is_shown_until_it_drives(self):
+        process = self.drive()
+        self.next_line()  # the end of the first one
+        os.write(self.primary, b" ")
+        self.assertEqual(self.next_line(), b"10cm/s 45deg/s  stop")
+        os.write(self.primary, UP)
+        self.assertEqual(self.next_line(), b"10cm/s 45deg/s  forward")
+        self.assertEqual(self.next_line(), b"10cm/s 45deg/s  rests")
+        os.write(self.primary, b"q")
+        self.set_points(process)
 
     def test_its_last_line_says_that_it_rests(self):
         process = self.drive()
