@@ -189,6 +189,11 @@ class Bus(Analyse):
         # B of the last is none; 55 + 80 + 160 + 55 bits of 2 us.
         self.assertEqual(found["messages"][-1]["response_ns"], 2000 * (55 + 80 + 160 + 55))
 
+    def test_identifiers_of_11_and_of_29_bits(self):
+        rows = "base,2047,0\nwide,2048,0\nlast,0x1FFFFFFF,0\nmarked,5X,0\nhex,0X6x,0\n".replace("\n", ",10000000,,\n")
+        self.assertEqual(self.column(self.bus(BUS + rows)["messages"], "id"),
+                         {"base": "0x7FF", "wide": "0x00000800", "last": "0x1FFFFFFF", "marked": "0x00000005", "hex": "0x00000006"})
+
     def test_extremes(self):
         largest = 2**63 - 1
         found = self.bus(BUS + f"a,1,8,{largest},,\nb,2,8,{largest},1,{largest}\nc,3,8,{largest},,\n", code=1)
@@ -230,6 +235,14 @@ class Bus(Analyse):
             out, _ = self.run_tool("analyse", "bus", path, "--bitrate", "1M")
             self.assertEqual(f"{faster} would do, too" in out, faster != "1 Mbit/s", out)
 
+    def test_how_long_a_file_may_be(self):
+        """What begins another piece of 64 KiB counts, be it a single byte; and a byte beyond 16 MiB is too much."""
+        self.assertIn("set.csv:1: unknown column 'x'", self.run_tool("analyse", "bus", self.file("x"), code=2)[1])
+        text = BUS + "a,1,8,1000000,,\n#"
+        text += "x" * (2**24 - len(text))
+        self.assertEqual(len(self.bus(text)["messages"]), 1)
+        self.assertIn("set.csv is larger than 16 MiB", self.run_tool("analyse", "bus", self.file(text + "x"), code=1)[1])
+
     def test_another_order(self):
         # Deadline monotonic order is not optimal. Here from the top: 125, 95 and 125 bits do not fit as a, c, b.
         text = BUS + "a,1,7,2240000,2200000,\nb,2,7,2880000,2760000,\nc,3,4,4400000,3400000,\n"
@@ -268,6 +281,30 @@ class Bus(Analyse):
         out, _ = self.run_tool("analyse", "bus", self.file(text.format("left")), "--bitrate", "1M")
         self.assertIn("with offsets", out)
 
+    def test_an_offset_beyond_63_bits_is_left_out(self):
+        """J and the offset are 9.5e18 ns together, for which there is no place in a pattern. Without the offset there is a bound: J and C."""
+        text = self.NODES + "a,1,8,2200000000000000000,,8000000000000000000,left,1500000000000000000\n"
+        found = self.bus(text, "--bitrate", "500k", code=1)
+        self.assertEqual(found["messages"][0]["response_ns"], 8_000_000_000_000_270_000)
+        self.assertEqual(found["messages"][0]["instances_ns"], [8_000_000_000_000_270_000])
+
+    def test_most_clocks_of_offsets(self):
+        def text(count):
+            return self.NODES + "".join(f"m{i},{i},0,1000000000,,,n{i},{5 if i == 1 else 0}\n" for i in range(1, count + 1))
+
+        self.assertIn("with offsets", self.run_tool("analyse", "bus", self.file(text(64)))[0])
+        out, err = self.run_tool("analyse", "bus", self.file(text(65)), code=2)
+        self.assertEqual(out, "")
+        self.assertIn("offsets by more than 64 clocks", err)
+        self.assertIn("name the nodes, or leave out the offsets", err)
+
+    def test_a_queue_without_a_bound(self):
+        text = self.NODES + "a,1,8,150000,,,left,\nb,2,8,150000,,,left,\n"
+        found = self.bus(text, "--bitrate", "1M", "--queue", "left=fifo", code=1)
+        self.assertEqual(found["queues"], [{"node": "left", "frames": None}])
+        out, _ = self.run_tool("analyse", "bus", self.file(text), "--bitrate", "1M", "--queue", "left=fifo", code=1)
+        self.assertIn("There is no bound on how many frames of left wait.\n", out)
+
     def test_identifiers_given_anew(self):
         """The set of test_another_order: a, c, b do, and nothing else."""
         text = BUS + "a,1,7,2240000,2200000,\nb,2,7,2880000,2760000,\nc,3,4,4400000,3400000,\n"
@@ -295,6 +332,7 @@ class Bus(Analyse):
                 ("name,id,dlc\na,1,8\n", "set.csv:1", "period_ns"),
                 (BUS + "a,1,8,1000\n\nb,zwei,8,1000\n", "set.csv:4", "'zwei'"),
                 (BUS + "a,0x20000000,8,1000\n", "set.csv:2", "29 bits"),
+                (BUS + "a,99999999999999999999,8,1000\n", "set.csv:2", "has more than 29 bits"),
                 (BUS + "a,1,9,1000\n", "set.csv:2", "12, 16"),
                 (BUS.strip() + ",fd\na,1,16,1000,,,no\n", "set.csv:2", "above 8"),
                 (BUS.strip() + ",fd\na,1,8,1000,,,slow\n", "set.csv:2", "'slow'"),
@@ -328,6 +366,40 @@ class Bus(Analyse):
                         ["--bitrate", "500k", "--data-bitrate", "250k"], ["--test", "rough"], ["--json", "--csv"]):
             self.run_tool("analyse", "bus", path, *options, code=2)
         self.run_tool("analyse", code=2)
+
+
+class Tables(Analyse):
+    def test_which_columns_a_set_needs(self):
+        self.file(TASKS + "a,1,10,100,,,\n", "cpu.csv")
+        for verb, needed, others in (
+                ("bus", {"name": "a", "id": "1", "dlc": "8", "period_ns": "10000000"},
+                 {"deadline_ns": "10000000", "jitter_ns": "0", "node": "left", "offset_ns": "0", "fd": "no"}),
+                ("tasks", {"name": "a", "priority": "1", "C_ns": "10", "T_ns": "100"}, {"D_ns": "100", "J_ns": "0", "B_ns": "0"}),
+                ("chain", {"hop": "a", "set": "cpu.csv", "activation": "sampled"}, {"response_ns": "", "best_ns": "0", "period_ns": ""})):
+            for column in needed | others:
+                cells = {name: cell for name, cell in (needed | others).items() if name != column}
+                path = self.file(",".join(cells) + "\n" + ",".join(cells.values()) + "\n")
+                with self.subTest(verb=verb, column=column):
+                    _, err = self.run_tool("analyse", verb, path, code=2 if column in needed else 0)
+                    self.assertEqual(f"set.csv:1: no column '{column}'\n" in err, column in needed, err)
+
+    def test_the_largest_sets(self):
+        def messages(count):
+            return BUS + "".join(f"m{i},{i}x,0,1000000000,,\n" for i in range(1, count + 1))
+
+        self.assertEqual(self.bus(messages(4096), "--bitrate", "1M")["messages"][-1]["response_ns"], 4096 * 80_000)
+        _, err = self.run_tool("analyse", "bus", self.file(messages(4097)), code=2)
+        self.assertIn("set.csv: 4097 messages\n    at most 4096\n", err)
+        tasks = TASKS + "".join(f"t{i},{i},1,1000000000,,,\n" for i in range(4097))
+        _, err = self.run_tool("analyse", "tasks", self.file(tasks), code=2)
+        self.assertIn("set.csv: 4097 tasks\n    at most 4096\n", err)
+
+    def test_up_to_which_size_a_set_is_looked_at_for_room(self):
+        for verb, most, header, row in (("bus", 128, BUS, "m{0},{0},0,1000000000,16000000,\n"), ("tasks", 40, TASKS, "t{0},{0},1000,1000000000,45000,,\n")):
+            for count in (most, most + 1):
+                path = self.file(header + "".join(row.format(i) for i in range(1, count + 1)))
+                out, _ = self.run_tool("analyse", verb, path)
+                self.assertEqual("LEAST T" in out, count == most, out)
 
 
 class Robot(Analyse):
@@ -460,6 +532,14 @@ class Tasks(Analyse):
         report = json.loads(self.run_tool("analyse", "tasks", "di_wheel_drive", "--json")[0])
         self.assertEqual([task["priority"] for task in report["tasks"]], list("432222221111"))
 
+    def test_tasks_of_one_priority_stay_in_their_order(self):
+        with open(os.path.join(SOURCE, "spec", "tasks.json"), encoding="utf-8") as file:
+            sets = json.load(file)["sets"]
+        for each in sets:
+            report = json.loads(self.run_tool("analyse", "tasks", each["name"], "--json")[0])
+            by_level = sorted(each["tasks"], key=lambda task: task["level"])
+            self.assertEqual([task["name"] for task in report["tasks"]], [task["name"] for task in by_level])
+
     def test_tests_of_the_utilisation(self):
         """[Liu, Layland 1973] n(2^(1/n) - 1), 0.8284 of two tasks; [Bini, Buttazzo, Buttazzo 2003] product of U + 1."""
         def tests(rows, code, *options):
@@ -508,11 +588,23 @@ class Tasks(Analyse):
         out, _ = self.run_tool("analyse", "tasks", path, "--lock", "3ns", "--interrupt", "2ns")
         self.assertIn("interrupts off for 3ns", out)
 
+    def test_whether_the_tick_releases_is_said(self):
+        path = self.file(TASKS + "a,1,10,100,,,\n")
+        for options, said in (((), ")"), (("--released-by-tick",), " that releases)")):
+            out, _ = self.run_tool("analyse", "tasks", path, "--tick", "50ns", "--tick-cost", "1ns", *options)
+            self.assertIn("(fixed priorities, preemptive, a tick of 1ns every 50ns" + said, out)
+
     def test_overload(self):
         found, whole = self.responses([("a", 2, 60, 100), ("b", 1, 41, 100)], 1)
         self.assertEqual(found, {"a": 60, "b": None})
         self.assertEqual(self.column(whole["tasks"], "schedulable"), {"a": True, "b": False})
         self.assertIn("101.00 %", whole["tasks"][1]["why"])
+
+    def test_an_overload_by_tasks_of_one_priority(self):
+        found, whole = self.responses([("a", 1, 60, 100), ("b", 1, 50, 100)], 1)
+        self.assertEqual(found, {"a": None, "b": None})
+        for task in whole["tasks"]:
+            self.assertIn("ask for 110.00 % of the processor", task["why"])
 
     def test_table_says_what_to_change(self):
         self.assertEqual(self.run_tool("analyse", "tasks", self.file(LATE), code=1)[0], LATE_TABLE)
@@ -586,6 +678,38 @@ act,sampled,2000000,2000,21005000
         self.file(BUS + "pose,1,7,1000000000,,\n", "bus.csv")
         found = self.chain(self.HOPS + "read,cpu.csv,sampled\npose,bus.csv,triggered\n", "--bitrate", "125k")
         self.assertEqual(found["why"], "pose takes the longest: 1ms")
+
+    def test_all_that_a_program_reads(self):
+        hops = self.HOPS + "sense,,sampled,300000,100000,5000000\nact,,triggered,200000,50000,\n"
+        whole = {"latency_ns": 500_000, "shortest_ns": 150_000, "age_ns": 5_500_000, "deadline_ns": None, "schedulable": True,
+                 "hops": [{"name": "sense", "activation": "sampled", "waits_ns": 0, "responds_ns": 300_000, "until_ns": 300_000},
+                          {"name": "act", "activation": "triggered", "waits_ns": 0, "responds_ns": 200_000, "until_ns": 500_000}],
+                 "why": "sense takes the longest: 300us"}
+        self.assertEqual(self.chain(hops), whole)
+        self.assertEqual(self.chain(hops, "--deadline", "5500us"),
+                         whole | {"deadline_ns": 5_500_000, "why": "0s before its deadline; sense takes the longest: 300us"})
+        self.assertEqual(self.chain(hops, "--deadline", "5499999ns", code=1),
+                         whole | {"deadline_ns": 5_499_999, "schedulable": False, "why": "1ns after its deadline; sense takes the longest: 300us"})
+
+    def test_an_age_beyond_63_bits(self):
+        """It is no hop's fault: each of them has a bound."""
+        self.assertEqual(self.chain(self.HOPS + f"a,,sampled,1,,{2**63 - 1}\n", code=1), {
+            "latency_ns": None, "shortest_ns": None, "age_ns": None, "deadline_ns": None, "schedulable": False,
+            "hops": [{"name": "a", "activation": "sampled", "waits_ns": None, "responds_ns": None, "until_ns": None}],
+            "why": "no bound: no bound found: its busy period is longer than the limits of the analysis"})
+
+    def test_what_samples_has_the_jitter_of_its_set(self):
+        self.file(TASKS + "read,2,1000,1000000,,250,\n", "cpu.csv")
+        self.file(BUS + "pose,1,7,1000000000,,250000\n", "bus.csv")
+        found = self.chain(self.HOPS + "read,cpu.csv,sampled\npose,bus.csv,sampled\n", "--bitrate", "125k")
+        self.assertEqual([hop["responds_ns"] for hop in found["hops"]], [1250, 1_250_000])
+        self.assertEqual(found["latency_ns"], 1250 + 1_000_000_000 + 1_250_000)
+
+    def test_frames_of_the_robot_have_their_exact_lengths(self):
+        """The hop before always takes 2 ms, and hands on no jitter; on the bus alone the frame has one of 1 ms."""
+        rows = json.loads(self.run_tool("analyse", "bus", "--json")[0])["messages"]
+        found = self.chain(self.HOPS + "estimate,,sampled,2000000,2000000,30000000\nodometry.pose,robot,triggered\n")
+        self.assertEqual(found["hops"][1]["responds_ns"], self.column(rows, "response_ns")["odometry.pose"] - 1_000_000)
 
     def test_over_the_robots_own_bus(self):
         found = self.chain(self.HOPS + "estimate,,sampled,2000000,,30000000\nodometry.pose,robot,triggered\n")
@@ -728,6 +852,30 @@ b,15,20000000,20000000,20000000,20000000,0,136000,300000,true
         close = regular + [(t + 20, "102#0102") for t, f in regular if f.startswith("102") and t == 500900]
         self.assertIn("bit rate", " ".join(self.trace(close, code=1)[1]["broken"]))
 
+    def test_more_errors_than_assumed(self):
+        """The log is of 2.99 s: with one at once and one more every second there may be three."""
+        def log(count):
+            return self.regular() + [(5000 + i * 1000, "20000004#0000000000000000") for i in range(count)]
+
+        for model, most, said in (("burst=1", 1, "1 was"), ("burst=2", 2, "2 were"), ("burst=1,every=1s", 3, "3 were")):
+            self.assertEqual(self.trace(log(most), "--errors", model)[1]["broken"], [])
+            self.assertEqual(self.broken(log(most + 1), "errors", "--errors", model), f"errors: {most + 1} error frames, {said} assumed")
+
+    def test_more_load_than_assumed(self):
+        """Frames of 136 us, beside a set of 2.25 %: 2.34 % may be, 2.39 % may not."""
+        def broken(distance):
+            return self.trace([(i * distance, "102#0102") for i in range(50)], code=1)[1]["broken"]
+
+        period = "period: b came every {} on average, every 20ms was assumed; --rates NAME=PERIOD says what was meant"
+        self.assertEqual(broken(5800), [period.format("5.8ms")])
+        self.assertEqual(broken(5700), [period.format("5.7ms"), "load: 2.39 % measured, 2.25 % at most were assumed"])
+
+    def test_more_bytes_than_assumed(self):
+        log = self.log([(0, "101#0102"), (10000, "102#01")])
+        path = self.file(BUS + "one,0x101,1,10000000,,\nnone,0x102,0,10000000,,\n")
+        found = json.loads(self.run_tool("analyse", "trace", log, "--set", path, "--json", code=1)[0])
+        self.assertEqual(found["broken"], ["length: one came with 2 bytes, 1 was assumed", "length: none came with 1 byte, 0 were assumed"])
+
     def test_times_of_a_log_are_no_finer_than_a_microsecond(self):
         """b takes 136 us, 300 us at most, and comes every 20 ms: what is a microsecond beside that contradicts nothing, two do."""
         def frames(*times):
@@ -796,6 +944,14 @@ b,15,20000000,20000000,20000000,20000000,0,136000,300000,true
         # What comes first has no distance, also where a drive's would fit: one of these two is as a drive repeats it.
         self.assertEqual(motors(0.04, 0.14, 0.26, code=1)["lateness_ns"], 20_000_000)
 
+    def test_which_set_points_are_repeated_as_those_of_a_drive(self):
+        """Every 100 ms, a quarter more or less: if most are, there is a grid to be behind of. What is farther apart is a pause."""
+        for times, lateness in (((0, 0.075, 0.195), 20_000_000), ((0, 0.074999, 0.195), 0),
+                                ((0, 0.125, 0.225, 0.275), 25_000_000), ((0, 0.125001, 0.225001, 0.275001), 0)):
+            path = self.file("".join(f"({1000 + time:.6f}) can0 201#A086010000000000\n" for time in times), "x.log")
+            found = json.loads(self.run_tool("analyse", "trace", path, "--json", code=1 if lateness else 0)[0])
+            self.assertEqual(found["messages"][0]["lateness_ns"], lateness, times)
+
     def test_a_refused_request_asks_for_nothing(self):
         frames = [(0, "208#01320000")] + [(1000 + i * 50000, "608#000000000000") for i in range(50)]
         refusal = "71D#080F010000000000"  # of the gyroscope, not_schedulable, the first
@@ -850,6 +1006,15 @@ class Picture(Analyse):
         self.assertEqual(len(arrows), 4)
         self.assertAlmostEqual((arrows[2] - first) / nanosecond, 11, places=1)
         self.assertAlmostEqual((arrows[3] - first) / nanosecond, 21, places=1)
+
+    def test_all_the_time_that_there_is(self):
+        """Its grid is the line at zero, as the next one would be beyond 63 bits."""
+        most = 2**63 - 1
+        rows = f"a,1,8,{most},,\nb,2,8,{most},1,{most}\nc,3,8,{most},,\n"
+        out, _ = self.run_tool("analyse", "bus", self.file(BUS + rows), "--svg", "-", code=1)
+        self.assertIn("Worst case of b<", out)
+        self.assertEqual(out.count('text-anchor="middle" fill="#555" font-size="10">'), 1)
+        self.assertIn('font-size="10">0s</text>', out)
 
     def test_what_waits_for_its_own_release_is_behind_nothing_less_urgent(self):
         out, _ = self.run_tool("analyse", "bus", self.file(DAVIS), "--bitrate", "125k", "--test", "sufficient", "--svg", "-", code=1)
@@ -909,6 +1074,12 @@ BA_ "GenMsgCycleTime" BO_ 2566844672 100;
         for rates, soon in (((), 15), (("--rates", "Soon=15ms"), 15), (("--rates", "Soon=5ms"), 5)):
             found = self.bus(text, *rates, name="car.json")
             self.assertEqual(self.column(found["messages"], "deadline_ns"), {"Slow": 10000000, "Soon": soon * 1000000, "Usual": 20000000})
+
+    def test_a_spec_is_known_by_what_is_in_it(self):
+        message = {"name": "Speed", "id": "0x101", "period": "10ms", "fields": []}
+        text = json.dumps({"robot": "car", "bus": {"bit_rate": 125000}, "messages": [message]})
+        for spec in (text, " \t\r\n" + text, self.TEXT, "\n" + self.TEXT):
+            self.assertEqual(self.bus(spec, name="car.txt")["messages"][0]["name"], "Speed")
 
     def test_what_another_reader_sees(self):
         """Names, identifiers, cycle times and senders of canmatrix are those that were analysed."""
@@ -994,9 +1165,19 @@ BA_ "CANFD_BRS" BO_ 259 0;
         # 00100000000 behind SOF: five zeros behind the 1, a stuff bit, then three, RRS and IDE: another one.
         self.assertEqual(self.rows("--lengths", "exact")["Fast"]["bits"], 17 + 2 + 12)
 
+    def test_a_parameter_group_comes_from_any_source(self):
+        """Any identifier: 36 bits to BRS, 7 stuff bits, 12 behind the data. That of the other has two runs of five ones."""
+        head = {"length": 16, "fd": True, "period": "100ms", "fields": []}
+        text = json.dumps({"robot": "truck", "bus": {"bit_rate": 500000, "data_bit_rate": 2000000}, "messages": [
+            {"name": "Group", "pgn": "0xFEF1", **head}, {"name": "Other", "id": "0x18FEF2FE", "format": "extended", **head}]})
+        rows = self.rows("--lengths", "exact", text=text, name="truck.json")
+        data = 5 + 128 + 31 + 27 + 1
+        self.assertEqual({name: (row["bits"], row["data_bits"]) for name, row in rows.items()}, {"Group": (55, data), "Other": (50, data)})
+
     def test_other_rates(self):
         fast = self.rows("--data-bitrate", "5M")["Fast"]
         self.assertEqual(fast["response_ns"], 64000 + 678 * 200 + 270000)
+        self.assertEqual(self.rows("--data-bitrate", "500k")["Fast"]["response_ns"], (32 + 678 + 32 + 152) * 2000)
         out, _ = self.run_tool("analyse", "bus", os.path.join(self.folder, "fd.dbc"))
         for word in ("500 kbit/s and 2 Mbit/s for data", "64 B FD, 32 + 678 bits"):
             self.assertIn(word, out)
@@ -1144,6 +1325,14 @@ BA_ "GenSigSendType" SG_ 8 b 1;
         self.assertIn("79 clocks, of 64", out)
         out, err = self.run_tool("analyse", "bus", self.file(many.replace(' 5;\n', ' 0;\n'), "none.dbc"))
         self.assertNotIn("clocks", out + err)  # nothing is left out of account
+
+    def test_start_delays_by_the_most_clocks(self):
+        for count, counts in ((64, True), (65, False)):
+            text = "BU_: " + " ".join(f"N{i}" for i in range(1, count + 1)) + "\n"
+            text += "".join(f"BO_ {i} m{i}: 0 N{i}\n" for i in range(1, count + 1))
+            text += "".join(f'BA_ "GenMsgCycleTime" BO_ {i} 1000;\nBA_ "GenMsgStartDelayTime" BO_ {i} 5;\n' for i in range(1, count + 1))
+            out, _ = self.run_tool("analyse", "bus", self.file(text, "clocks.dbc"))
+            self.assertEqual(("with offsets" in out, "The start delays do not count: there are 65 clocks, of 64 at most." in out), (counts, not counts))
 
     def test_what_has_a_clock_of_its_own(self):
         """A message of no node, and one that is also sent on events, whichever node sends it: 70 of either beside the one that is delayed."""
