@@ -77,8 +77,9 @@ Arrivals read_arrivals(const std::string& file, const protocol::Catalogue& catal
   if (reader.complaints().count(log::Cause::cut_line) > 0)
     log.remarks.emplace_back("The log's last line is cut off (its writer was ended): it was passed over.");
   if (others > 0)
-    log.remarks.push_back(fmt::format("Only the frames of {}: {} of other interfaces were passed over.",
-                                      reader.interfaces().name(*interface), others));
+    log.remarks.push_back(fmt::format("Only the frames of {}: {} of other interfaces {} passed over.",
+                                      reader.interfaces().name(*interface), others,
+                                      others == 1 ? "was" : "were"));
   if (backwards > 0) {
     log.remarks.push_back(fmt::format("{} {} older than the one before: sorted by time.",
                                       counted(backwards, "frame"), backwards == 1 ? "is" : "are"));

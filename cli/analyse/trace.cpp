@@ -287,9 +287,9 @@ std::string to_table(const TraceStudy& trace) {
                         : m.count == 0     ? "never came"
                                            : "ok");
   }
-  text +=
-      fmt::format("\n{} frames in {}; load {:.2f} % measured, {:.2f} % at most ({})\n", trace.frames,
-                  time_text(trace.span), trace.load * 100, trace.study.utilisation() * 100, trace.study.head);
+  text += fmt::format("\n{} in {}; load {:.2f} % measured, {:.2f} % at most ({})\n",
+                      counted(trace.frames, "frame"), time_text(trace.span), trace.load * 100,
+                      trace.study.utilisation() * 100, trace.study.head);
   text += trace.broken.empty() ? "The log contradicts no assumption.\n"
                                : "Assumptions that the log contradicts:\n";
   for (const std::string& broken : trace.broken) text += "  - " + broken + "\n";

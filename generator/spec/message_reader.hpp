@@ -290,6 +290,9 @@ class MessageReader : private NodeReader {
       if (!a->node->truth && out.fd)
         tell(*a, "a classic frame of " + std::to_string(out.length) + " bytes",
              "\"fd\": true, or at most 8 bytes");
+      if (a->node->truth && out.length > 64)
+        tell(*a, "a frame of CAN FD of " + std::to_string(out.length) + " bytes",
+             "at most 64 bytes, or no \"fd\": a longer parameter group comes in several frames");
       out.fd = a->node->truth;
     }
     const Selectors selectors{out};

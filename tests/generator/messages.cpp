@@ -240,6 +240,23 @@ TEST_CASE("messages: an identifier has sixteen digits at most") {
             R"(f.json:1: /messages/0/id: "0x00000000000000123" is not an id; "0x0" to "0x1FFFFFFF")"});
 }
 
+TEST_CASE("messages: a frame of CAN FD has 64 bytes at most, a parameter group 1785 in several frames") {
+  const auto with = [](const std::string& more) {
+    return spec::parse(
+        R"({"robot": "r", "messages": [{"name": "M", "pgn": "0xFEF1", "fields": [])" + more + "}]}",
+        "f.json");
+  };
+  for (const char* good :
+       {R"(, "length": 64, "fd": true)", R"(, "length": 1785)", R"(, "length": 65, "fd": false)"}) {
+    INFO(good);
+    CHECK(printed(with(good).problems).empty());
+  }
+  CHECK(printed(with(R"(, "length": 65, "fd": true)").problems) ==
+        std::vector<std::string>{
+            "f.json:1: /messages/0/fd: a frame of CAN FD of 65 bytes; at most 64 bytes, or no \"fd\": "
+            "a longer parameter group comes in several frames"});
+}
+
 TEST_CASE("messages: a message with tens of thousands of selected fields is read in seconds") {
   std::string text = "BO_ 1 A: 8 N\n SG_ Page M : 0|20@1+ (1,0) [0|0] \"\" N\n";
   constexpr int last = 60'000;
