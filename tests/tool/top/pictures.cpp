@@ -217,6 +217,80 @@ TEST_CASE("top pictures: how loaded the bus is, and what its controller says") {
   is_as_in("tests/tool/top/golden/load.txt", all);
 }
 
+TEST_CASE("top pictures: what was counted of a bus, of one and of several") {
+  namespace cls = ocm::can::error_class;
+  namespace what = ocm::can::controller_error;
+  using ocm::can::Format;
+  // A broadcast of 17 bytes in three packets. [SAE J1939-21, figure C3]
+  ocm::protocol::Field last;
+  last.name = "last";
+  last.position = {128, 8};
+  ocm::protocol::FrameLayout layout;
+  layout.length = 20;
+  layout.fields = {&last, 1};
+  layout.address = {ocm::protocol::Address::By::pgn, true, 0x18FEECFE};
+  ocm::protocol::Topic group;
+  group.name = "VI";
+  group.board = ocm::protocol::no_board;
+  group.kind = ocm::protocol::Kind::message;
+  group.frames = {&layout, 1};
+  ocm::protocol::Catalogue truck;
+  truck.robot = "truck";
+  truck.topics = {&group, 1};
+
+  Bus2 bus;
+  const auto anew = [&bus] { bus.models = Models{catalogue, 250'000}; };
+  const auto counted = [&bus] {  // below the load, with its styles
+    std::istringstream lines{bus.draw({200, 6})};
+    std::string line, styles;
+    for (int i = 0; i < 5; ++i) std::getline(lines, line);
+    std::getline(lines, styles);
+    return line + styles;
+  };
+  const auto overflow = [&bus] {
+    bus.model().take(entry(2s, cls::controller, {0, what::rx_overflow, 0, 0, 0, 0, 0, 0}, Format::error));
+  };
+  anew();
+  overflow();
+  CHECK(counted() == "|1 frame  1 error frame  1 overflow|    dim:7,bad:27");
+  overflow();
+  bus.models.lost("can0", 1);
+  CHECK(counted() == "|2 frames  2 error frames  2 overflows  1 lost|    dim:8,bad:37");
+  anew();  // counters without a state
+  bus.model().take(entry(2s, cls::counters, {0, 0, 0, 0, 0, 0, 104, 3}, Format::error));
+  CHECK(counted() == "|TEC 104 REC 3  1 frame  1 error frame|    dim:22,bad:15");
+  anew();
+  for (int i = 0; i < 5; ++i) bus.model().take(entry(2500ms + i * 100ms, 0x510, {0, 0, 0, 1}));
+  CHECK(counted() == "|5 frames  3 incomplete|    dim:8,warning:14");
+  anew();
+  bus.model().take(entry(2s, 0x510, {0, 0}));
+  CHECK(counted() == "|1 frame  1 of a wrong length|    dim:7,warning:21");
+  anew();
+  ocm::can::AnyFrame fd;
+  fd.id = 0x7F0;
+  fd.length = 12;
+  fd.flags = ocm::can::frame_flag::fd | ocm::can::frame_flag::bit_rate_switch;
+  bus.model().take(ocm::log::Entry{morning + 2s, fd});
+  CHECK(counted() == "|1 frame  1 unknown  1 CAN FD, not in the load|    dim:45");
+  anew();
+  for (std::uint32_t id = 0; id <= Model::most_unknown; ++id)
+    bus.model().take(entry(2s, 0x100'0000 + id, {}, Format::extended));
+  CHECK(counted() ==
+        "|1025 frames  1025 unknown  1 of more identifiers than are shown|    dim:25,warning:38");
+
+  bus.models = Models{truck, 250'000};
+  const auto broadcast = [&bus](ocm::base::Duration at, int packets) {
+    bus.model().take(entry(at, 0x1CECFF00, {0x20, 17, 0, 3, 0xFF, 0xEC, 0xFE, 0}, Format::extended));
+    for (int i = 1; i <= packets; ++i)
+      bus.model().take(entry(at + i * 50ms, 0x1CEBFF00, {i, 0, 0, 7, 0, 0, 0, 0}, Format::extended));
+  };
+  broadcast(0s, 3);
+  CHECK(counted() == "|4 frames  1 message put together|    dim:32");
+  broadcast(1s, 2);  // followed by the next before its end
+  broadcast(2s, 3);
+  CHECK(counted() == "|11 frames  2 messages put together  1 not put together|    dim:34,warning:20");
+}
+
 TEST_CASE("top pictures: nothing came, and the help") {
   Bus2 bus;
   bus.models = Models{catalogue, 250'000};
@@ -284,6 +358,7 @@ TEST_CASE("top pictures: other keys of the same meaning, and keys that mean noth
   Bus2 bus;
   using Effects = Effect::Kind;
   const auto effect = [&](const Key& key) { return bus.view.press(key); };
+  static_cast<void>(bus.draw({80, 10}));
   CHECK(effect(letter("Z")).kind == Effects::pause);
   CHECK(effect(letter(",")).by == -1s);
   CHECK(effect(letter(".")).by == 1s);

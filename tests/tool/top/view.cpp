@@ -1,6 +1,7 @@
 #include "cli/top/view.hpp"
 
 #include <algorithm>
+#include <array>
 #include <random>
 #include <sstream>
 
@@ -105,6 +106,77 @@ TEST_CASE("top: each column has a width from which on there is room for it") {
   CHECK(heading(55) == "NAME         HZ VALUES");
   CHECK(robot.line("scale", {120, 24}) ==
         "scale      10.0    0us  100ms   0.6%   100ms      0        20 weight 119 g  state stable");
+}
+
+TEST_CASE("top: a value is there where it just fits") {
+  Robot robot;
+  CHECK(robot.line("scale", {42, 24}) == "scale      10.0 weight 119 g  state stable");
+  CHECK(robot.line("scale", {41, 24}) == "scale      10.0 weight 119 g …");
+  // The first one without its name, rather than not.
+  CHECK(robot.line("scale", {28, 24}) == "scale      10.0 weight 119 g");
+  CHECK(robot.line("scale", {27, 24}) == "scale      10.0 119 g …");
+}
+
+TEST_CASE("top: each value of a frame is as wide as it ever was, and a long name of it is cut") {
+  using ocm::protocol::ByteOrder;
+  const ocm::protocol::Field fields[2] = {
+      {"speed", {0, 16, ByteOrder::little}, false, {1, 0}, {}, "", 0, 65535, {}},
+      {"temperature_of_the_motor", {16, 8, ByteOrder::little}, false, {1, 0}, {}, "", 0, 255, {}}};
+  ocm::protocol::FrameLayout layout;
+  layout.length = 3;
+  layout.fields = fields;
+  layout.address = {ocm::protocol::Address::By::identifier, false, 0x121};
+  ocm::protocol::Topic topic;
+  topic.name = "drive";
+  topic.board = ocm::protocol::no_board;
+  topic.kind = ocm::protocol::Kind::message;
+  topic.frames = {&layout, 1};
+  ocm::protocol::Catalogue car;
+  car.robot = "car";
+  car.topics = {&topic, 1};
+  Robot robot;
+  robot.models = Models{car, 250'000};
+  robot.model().take(entry(1000ms, 0x121, {0xE8, 0x03, 5}));
+  CHECK(robot.line("drive").ends_with(" speed 1000  temperature_of_the_motor 5"));
+  robot.model().take(entry(1100ms, 0x121, {7, 0, 200}));
+  CHECK(robot.line("drive").ends_with(" speed    7  temperature_of_the_motor 200"));
+  robot.model().take(entry(1200ms, 0x121, {8, 0, 4}));
+  CHECK(robot.line("drive").ends_with(" speed    8  temperature_of_the_motor   4"));
+  // On a line of its own it has two fifths of the width.
+  robot.view.press(Key{Kind::down});
+  robot.view.press(Key{Kind::enter});
+  CHECK(robot.line("  temp", {80, 24}).starts_with("  temperature_of_the_motor            4"));
+  CHECK(robot.line("  temp", {50, 24}).starts_with("  temperature_of_the            4"));
+}
+
+TEST_CASE("top: of several frames a value has its frame's name, and its own where the frame has more") {
+  auto frames = scale_frames;
+  frames[0].name = "plate";
+  std::array<ocm::protocol::Field, 2> of_state{state_fields[0], state_fields[0]};
+  of_state[1].name = "again";
+  frames[1].fields = of_state;
+  auto renamed_topics = topics;
+  renamed_topics[0].frames = frames;
+  ocm::protocol::Catalogue renamed = catalogue;
+  renamed.topics = renamed_topics;
+  Robot robot;
+  robot.models = Models{renamed, 250'000};
+  weigh(robot.model(), 1900ms, {76, 7});
+  CHECK(robot.line("scale", {109, 24}).ends_with(" plate 119 g  state.state stable  state.again stable"));
+}
+
+TEST_CASE("top: how often a row is due is said where there is room for its value, too") {
+  const ocm::protocol::Period every_100ms{100, ocm::protocol::PeriodUnit::milliseconds};
+  Robot robot;
+  ask(robot.model(), 2s, Mode::publish, every_100ms);
+  robot.now = morning + 2400ms;
+  CHECK(robot.line("scale", {59, 24}).find(" due every 100ms weight 119 g") != std::string::npos);
+  CHECK(robot.line("scale", {58, 24}).find("due") == std::string::npos);
+  CHECK(robot.line("scale", {58, 24}).find(" weight 119 g") != std::string::npos);
+  // Of a row without a value it is said on a narrow screen, too.
+  robot.models = Models{catalogue, 250'000};
+  ask(robot.model(), 2s, Mode::publish, every_100ms);
+  CHECK(robot.line("scale", {50, 24}) == "scale         - due every 100ms nothing came");
 }
 
 TEST_CASE("top: fits every terminal, and breaks no number") {
@@ -291,7 +363,11 @@ TEST_CASE("top: a row opens into a line a field, and the cursor stays where it i
   robot.view.press(Key{Kind::down});
   robot.view.press(letter("-"));  // on a field: closes its row
   CHECK(robot.names() == Names{"scale", "lamp_1", "7FF"});
+  robot.view.press(letter("-"));  // it is closed
+  CHECK(robot.names().size() == 3);
   robot.view.press(letter("+"));
+  CHECK(robot.names().size() == 5);
+  robot.view.press(letter("+"));  // it is open
   CHECK(robot.names().size() == 5);
   robot.view.press(letter("*"));
   CHECK(robot.names().size() == 3);
@@ -314,6 +390,15 @@ TEST_CASE("top: of a field that has kept its value for a second it is said for h
   CHECK(robot.line("  weight").find("unchanged") == std::string::npos);
   robot.now += 1ns;
   CHECK(robot.line("  weight").ends_with("  unchanged 1.0s"));
+  // A value of zero begins like any other when it is seen first.
+  Robot zero;
+  weigh(zero.model(), 1990ms, {0, 0});
+  zero.draw();
+  zero.view.press(Key{Kind::down});
+  zero.view.press(Key{Kind::enter});
+  CHECK(zero.line("  weight").find("unchanged") == std::string::npos);
+  zero.now += 1s;
+  CHECK(zero.line("  weight").find("  unchanged 1.0s") != std::string::npos);
 }
 
 TEST_CASE("top: a multiplexer's other pages keep their values and their places") {
@@ -390,6 +475,9 @@ TEST_CASE("top: a field's graph") {
   }
   robot.now = morning + 3750ms;
   CHECK(robot.line("  weight").find(" ▁▂▃▄▅▆▇█ 100..107") != std::string::npos);
+  // Where there is room for at least four values beside their range.
+  CHECK(robot.line("  weight", {41, 24}).ends_with(" ▁▃▆█ 100..107"));
+  CHECK(robot.line("  weight", {40, 24}).find("..") == std::string::npos);
   // It stays when its row is closed.
   robot.view.press(letter("-"));
   CHECK(robot.names() == Names{"scale", "  weight", "lamp_1", "7FF"});
@@ -401,6 +489,25 @@ TEST_CASE("top: a field's graph") {
   CHECK(robot.names() == Names{"scale", "  weight", "  state", "lamp_1", "7FF"});
   robot.view.press(letter(" "));
   CHECK(robot.names() == Names{"scale", "lamp_1", "7FF"});
+}
+
+TEST_CASE("top: a graph is empty where there was no value yet") {
+  Robot robot;
+  robot.models = Models{catalogue, 250'000};
+  robot.models.of("can0");
+  robot.view.press(letter("a"));
+  robot.draw();
+  robot.view.press(Key{Kind::home});
+  robot.view.press(letter(" "));
+  CHECK(robot.models.follow(0, robot.view.graphs(0)));
+  robot.models.until(morning);
+  robot.models.until(morning + 250ms);
+  weigh(robot.model(), 300ms, {4, 0});
+  robot.models.until(morning + 500ms);
+  weigh(robot.model(), 600ms, {8, 0});
+  robot.models.until(morning + 750ms);
+  robot.now = morning + 750ms;
+  CHECK(robot.line("  weight") == "  weight          102 g       ▁█ 101..102");
 }
 
 TEST_CASE("top: on a screen that becomes higher a list is shown up to its end") {
@@ -445,7 +552,7 @@ TEST_CASE("top: topics that were asked for, and all of the spec") {
   Robot robot;
   robot.view.press(letter("a"));
   CHECK(robot.names() == Names{"scale", "lamp_1", "lamp_2", "lamp_3", "7FF"});
-  CHECK(robot.line("lamp_3").find("nothing came") != std::string::npos);
+  CHECK(robot.line("lamp_3") == "lamp_3        -      -      -      - nothing came");
   robot.view.press(letter("a"));
   robot.view.only({&catalogue.topics[3], &catalogue.topics[0]});
   CHECK(robot.names() == Names{"scale", "lamp_3"});
@@ -497,6 +604,10 @@ TEST_CASE("top: the bar of a log") {
   CHECK(std::count(bar.begin(), bar.end(), '=') == 15);
   robot.playing = Playing{0s, 0s, 1, true};
   CHECK(robot.draw({40, 24})[22].ends_with(" end"));
+  // With less room than for five columns there is none.
+  robot.playing = Playing{0s, 0s, 1, false};
+  CHECK(robot.draw({23, 24})[22] == "0.0 of 0.0 s [=====] x1");
+  CHECK(robot.draw({22, 24})[22] == "0.0 of 0.0 s  x1");
 }
 
 TEST_CASE("top: several buses have a line each, and their name before each row") {
@@ -507,6 +618,33 @@ TEST_CASE("top: several buses have a line each, and their name before each row")
   CHECK(lines[3].starts_with("can1 ["));
   CHECK_FALSE(robot.line("can0:scale").empty());
   CHECK_FALSE(robot.line("can1:scale").empty());
+}
+
+TEST_CASE("top: of two buses a name filters their rows, and the cursor stays on its bus") {
+  Robot robot;
+  weigh(robot.models.of("can1"), 1900ms, {0, 0});
+  robot.draw();
+  for (const char* text : {"/", "N", "1"}) robot.view.press(letter(text));
+  robot.view.press(Key{Kind::enter});
+  CHECK(robot.line("can0:").empty());
+  CHECK_FALSE(robot.line("can1:scale").empty());
+  robot.view.press(Key{Kind::escape});
+  CHECK_FALSE(robot.line("can0:scale").empty());
+  const auto below = [&robot](std::string_view row) {
+    const auto lines = robot.draw();
+    const auto at = std::find_if(lines.begin(), lines.end(),
+                                 [row](const std::string& line) { return line.starts_with(row); });
+    return at == lines.end() || at + 1 == lines.end() ? std::string{} : *(at + 1);
+  };
+  robot.view.press(Key{Kind::end});
+  robot.view.press(Key{Kind::enter});
+  CHECK(below("can1:scale").starts_with("  weight"));
+  robot.view.press(Key{Kind::down});
+  robot.view.press(letter("-"));
+  CHECK(below("can1:scale").empty());
+  robot.view.press(letter("+"));
+  CHECK(below("can0:scale").starts_with("can0:lamp_1"));
+  CHECK(below("can1:scale").starts_with("  weight"));
 }
 
 TEST_CASE("top: whatever is pressed, it draws") {

@@ -113,6 +113,9 @@ class Top(played_adapter.WithAdapter, screens.Screens):
         self.press(100, "/", "o", "x", "BSpace", "d", "Enter")
         harness.waiting.until(lambda: not self.row(100, "gyroscope"), "the filter")
         self.shows(100, "odometry", "/od")
+        # Ctrl-H and Ctrl-J are what other terminals send of Backspace and Enter.
+        self.press(100, "/", "p", "x", "C-h", "o", "w", "C-j")
+        self.shows(100, "power_status", "  /pow", "? help")
         self.press(100, "q")
         self.assertEqual(self.ended(100)[-1], "END 0")
 
@@ -147,6 +150,18 @@ class Top(played_adapter.WithAdapter, screens.Screens):
         for button, row in (("a", "7F0"), ("`", "gyroscope")):
             self.tmux("send-keys", "-t", "of100", "-l", f"\x1b[M{button}!%")
             harness.waiting.until(lambda row=row: self.look_of(100, row) == chosen, row)
+        self.press(100, "q")
+        self.assertEqual(self.ended(100)[-1], "END 0")
+
+    def test_any_key_leaves_the_help(self):
+        """Also a click in the first line and F12, which mean nothing elsewhere."""
+        self.open(100, "top", self.log(1), "--mouse", rows=24)
+        self.shows(100, "gyroscope", " end")
+        for leave in (lambda: self.click(100, 0), lambda: self.press(100, "F12")):
+            self.press(100, "?")
+            self.shows(100, "Any key leaves this page.")
+            leave()
+            self.shows(100, "gyroscope")
         self.press(100, "q")
         self.assertEqual(self.ended(100)[-1], "END 0")
 
@@ -193,8 +208,9 @@ class Top(played_adapter.WithAdapter, screens.Screens):
         def looks():
             """How often it has waited. [man 5 proc: voluntary_ctxt_switches]"""
             return int(re.search(r"^voluntary_ctxt_switches:\s*(\d+)", self.read(f"/proc/{top}/status"), re.M)[1])
-        first, seen = at(), looks()
+        first, seen, begin = at(), looks(), time.monotonic()
         harness.waiting.until(lambda: looks() >= seen + 20, "it plays for some time")
+        self.assertGreater(time.monotonic() - begin, 0.2)  # 20 ms from one look to the next
         self.assertEqual(at(), first)
         self.press(100, "p")
         self.shows(100, "paused")
@@ -278,7 +294,8 @@ class Top(played_adapter.WithAdapter, screens.Screens):
         self.open(130, "top", self.log(), rows=24)
         self.shows(130, "gyroscope", "of 29.9 s")
         self.press(130, "p", "0", "Right", "Right")
-        for keys, at, frames in (((), "20.0", 201), (("Left",), "10.0", 101), ((",",), " 9.0", 91), (("0",), " 0.0", 1), ((".",), " 1.0", 11)):
+        for keys, at, frames in (((), "20.0", 201), (("Left",), "10.0", 101), ((",",), " 9.0", 91), (("0",), " 0.0", 1), ((".",), " 1.0", 11),
+                                 (("Left",), " 0.0", 1), (("Right",) * 3, "29.9", 300)):  # no further than its ends
             self.press(130, *keys)
             self.shows(130, f"{at} of 29.9 s", f"{frames} frame{'' if frames == 1 else 's'}")
             harness.waiting.until(lambda frames=frames: re.search(rf" 0 +{frames} x ", self.row(130, "gyroscope")), f"{frames} samples, no fault")
@@ -303,7 +320,7 @@ class Top(played_adapter.WithAdapter, screens.Screens):
             file.write("(1.0) can0 123#19\n")
         for name, locale, unit in (("70", "C", "?C"), ("71", "C.UTF-8", "°C")):
             self.open(name, "--spec", spec, "top", log, rows=24, before=f"export LC_ALL={locale}; ")
-            self.shows(name, f"Oil 25 {unit}")
+            self.shows(name, f"Oil 25 {unit}", "for its load: --bitrate 500k")
             self.press(name, "q")
             self.assertEqual(self.ended(name)[-1], "END 0")
 
@@ -315,13 +332,25 @@ class Top(played_adapter.WithAdapter, screens.Screens):
         with open(log, "w", encoding="ascii") as file:
             file.writelines(f"({10 + i / 10:.6f}) can0 123#{i:02X}0F010000000000\n({10.01 + i / 10:.6f}) can0 124#FF\n" for i in range(40))
         self.open(100, "--spec", spec, "top", log, "--bitrate", "500k", rows=24)
-        self.shows(100, "Engine", "of 3.9 s")
+        self.shows(100, "Engine", "of 3.9 s", "  worst ")
         self.press(100, "p", "0", "Right", "Down", "Enter")
         value = next(event["fields"]["Speed"] for event in reversed(self.objects(self.run_tool("--spec", spec, "decode", "--json", log)[0]))
                      if "fields" in event)
         self.shows(100, f"{value:g} rpm", "first", "124", "FF")
         self.press(100, "q")
         self.assertEqual(self.ended(100)[-1], "END 0")
+
+    def test_can_fd_is_in_the_load_where_its_bit_rate_is_given(self):
+        log = os.path.join(self.folder, "fd.log")
+        with open(log, "w", encoding="ascii") as file:
+            file.writelines(f"({1000 + i / 10:.6f}) can0 7F0##1DEADBEEF\n" for i in range(5))
+        for name, options in ((100, ()), (101, ("--data-bitrate", "2M"))):
+            self.open(name, "top", log, *options, rows=24)
+            lines = self.shows(name, " end", "5 frames  5 unknown", "DE AD BE EF")
+            self.assertEqual([line for line in lines if "frames  " in line and "unknown" in line],
+                             ["5 frames  5 unknown" + ("" if options else "  5 CAN FD, not in the load")])
+            self.press(name, "q")
+            self.assertEqual(self.ended(name)[-1], "END 0")
 
     def test_a_log_that_is_cut_while_it_is_played(self):
         log = self.log(seconds=300)
@@ -455,18 +484,24 @@ class Top(played_adapter.WithAdapter, screens.Screens):
         with open(log, "w", encoding="ascii") as file:
             file.write("(1000.000000) can0 208#01640000\n")  # the gyroscope is asked for, and does not come
             file.writelines(f"({1000.01 + i / 10:.6f}) can0 7F0#01\n" for i in range(40))
-        self.open(100, "top", log, rows=24)
-        self.shows(100, "7F0")
-        self.press(100, "p", "0", ".", ".", ">", "End")
-        self.shows(100, "2.0 of 3.9 s", "PAUSED", "1 missing", "by name")
         black, green, yellow, red, cyan = 30, 32, 33, 31, 36
-        background, bold, dim = 10, 1, 2
-        for word, look in (("late.log", [bold]), ("AMiRo", [dim]), ("PAUSED", [yellow]), ("1 missing", [bold, red]), ("gyroscope", [bold, red]),
-                           ("NAME", [black, cyan + background]), ("HZ", [black, green + background]), ("7F0", [black, cyan + background]),
-                           ("===", [green]), ("x1 paused", [bold]), ("? help", [dim]), ("2.0 of", [])):
-            harness.waiting.until(lambda: self.look_of(100, word) == look, f"{word}: {look}, not {self.look_of(100, word)}")
-        self.press(100, "q")
-        self.assertEqual(self.ended(100)[-1], "END 0")
+        background, bold, dim, reverse = 10, 1, 2, 7
+        coloured = (("late.log", [bold]), ("AMiRo", [dim]), ("PAUSED", [yellow]), ("1 missing", [bold, red]), ("gyroscope", [bold, red]),
+                    ("NAME", [black, cyan + background]), ("HZ", [black, green + background]), ("7F0", [black, cyan + background]),
+                    ("===", [green]), ("x1 paused", [bold]), ("? help", [dim]), ("2.0 of", []))
+        plain = (("late.log", [bold]), ("AMiRo", []), ("PAUSED", [bold]), ("1 missing", [bold]), ("gyroscope", [bold]),
+                 ("NAME", [bold, reverse]), ("HZ", [reverse]), ("7F0", [reverse]),
+                 ("===", []), ("x1 paused", [bold]), ("? help", []), ("2.0 of", []))
+        for name, options, looks in ((100, (), coloured), (101, ("--no-color",), plain)):
+            self.open(name, "top", *options, log, rows=24)
+            self.shows(name, "7F0")
+            self.press(name, "p", "0", ".", ".", ">", "End")
+            self.shows(name, "2.0 of 3.9 s", "PAUSED", "1 missing", "by name")
+            for word, look in looks:
+                harness.waiting.until(lambda name=name, word=word, look=look: self.look_of(name, word) == look,
+                                      f"{word}: {look}, not {self.look_of(name, word)}")
+            self.press(name, "q")
+            self.assertEqual(self.ended(name)[-1], "END 0")
 
     def test_a_serial_adapter(self):
         adapter = self.adapter()
@@ -484,10 +519,15 @@ class Top(played_adapter.WithAdapter, screens.Screens):
 
     def test_a_terminal_that_it_cannot_use(self):
         self.start_bus("gyro")
-        for name, what in (("dumb", "cannot move its cursor"), ("unheard-of", "nothing is known here"), ("", "TERM is not set")):
-            self.open(80, "--bus", "sim", "top", before=f"export TERM={shlex.quote(name)}; ")
-            self.assertIn(what, "\n".join(self.ended(80)))
-            self.assertEqual(self.ended(80)[-1], "END 2")
+        for before, what, remedy in (("export TERM=dumb", "cannot move its cursor", "amiroctl stats and listen write to anything"),
+                                     ("export TERM=unheard-of", "nothing is known here", "TERM=xterm-256color amiroctl top, or install ncurses-term"),
+                                     ("export TERM=", "TERM is not set", "TERM=xterm-256color amiroctl top"),
+                                     ("exec < /dev/null", "top draws on a terminal, and standard input is none", "amiroctl stats and listen")):
+            self.open(80, "--bus", "sim", "top", before=f"{before}; ")
+            lines = self.ended(80)
+            self.assertIn(what, "\n".join(lines))
+            self.assertIn(remedy, "\n".join(lines))
+            self.assertEqual(lines[-1], "END 2")
             self.tmux("kill-session", "-t", "of80")
         _, refused = self.run_tool("top", code=2)
         self.assertIn("top draws on a terminal, and standard output is none", refused)
