@@ -5,9 +5,12 @@
 #include <csignal>
 #include <cstring>
 #include <deque>
+#include <fcntl.h>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <set>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include "ocm/topics/amiro.hpp"
@@ -635,6 +638,209 @@ TEST_CASE("recorder: what becomes of an interface is said once, when it changes"
   CHECK(said.text() ==
         "can0 went down; waiting for it to come back\ncan0 is up again\n"
         "can0 is gone; waiting for it to come back\ncan0 is back\n");
+}
+
+/// A bus beside others. Each frame can be read at a time of its own, which is not before it came.
+class Beside final : public Up {
+ public:
+  struct Frame {
+    Moment came, readable;
+  };
+  Beside(World& world, int number, std::vector<Frame> frames)
+      : Up(true),
+        world_(&world),
+        name_("can" + std::to_string(number)),
+        descriptor_(1000 + number),
+        frames_(std::move(frames)) {
+    world.inputs[descriptor_] = [this] {
+      return next_ < frames_.size() ? frames_[next_].readable : Moment::max();
+    };
+  }
+  std::size_t read(std::span<log::Entry> into, std::uint16_t interface) override {
+    std::size_t count = 0;
+    for (; count < std::min(into.size(), batch) && next_ < frames_.size() &&
+           frames_[next_].readable <= world_->now();
+         ++next_)
+      into[count++] = {world_->wall_at(frames_[next_].came), can::Frame{0x601, 4, {}}, interface};
+    return count;
+  }
+  std::string_view name() const override { return name_; }
+  int descriptor() const override { return descriptor_; }
+
+ private:
+  World* world_;
+  std::string name_;
+  int descriptor_;
+  std::vector<Frame> frames_;
+  std::size_t next_ = 0;
+};
+
+/// Of buses with these frames, each on its own.
+std::vector<record::Port> ports_beside(World& world, const std::vector<std::vector<Beside::Frame>>& buses) {
+  std::vector<record::Port> ports;
+  for (std::size_t i = 0; i < buses.size(); ++i) {
+    record::Port port;
+    port.capture = std::make_unique<Beside>(world, static_cast<int>(i), buses[i]);
+    port.name = port.capture->name();
+    ports.push_back(std::move(port));
+  }
+  return ports;
+}
+
+transport::Outcome<std::unique_ptr<record::Capture>> never_back(std::string_view) {
+  return transport::Failure{"away", ""};
+}
+
+TEST_CASE("recorder: of several buses a frame that comes alone is written with the next look") {
+  const Silence silence;
+  const Folder folder;
+  World world{1};
+  std::optional<Moment> written;
+  world.disk = [&](int, std::string_view text) {
+    if (!text.empty() && !written) written = world.now();
+    return cli::Written{text.size(), 0};
+  };
+  record::Files files{to_one_file(folder), amiro::catalogue};
+  REQUIRE(files.open().ok());
+  const Moment came = World::start + 1s;
+  std::vector<std::vector<Beside::Frame>> buses(2);
+  buses[0].push_back({came, came});
+  record::Limits limits;
+  limits.duration = 10s;
+  record::Recorder recorder{ports_beside(world, buses), never_back, files, limits, true};
+  world.beside = [&recorder] { static_cast<void>(recorder.writing().step(0ms)); };
+  recorder.receive();
+  world.beside = nullptr;
+  while (recorder.writing().step(0ms)) world.pass(1ms);
+  CHECK(recorder.received() == 1);
+  REQUIRE(written.has_value());
+  CHECK(*written - came < 300ms);
+}
+
+TEST_CASE(
+    "recorder: what waits on several buses is in the order of its times, however often much of it waits") {
+  const Silence silence;
+  const Folder folder;
+  World world{1};
+  // Ten times 25 ms of which one bus has more frames than are fetched with two looks, and the other less.
+  std::vector<std::vector<Beside::Frame>> buses(2);
+  for (int burst = 1; burst <= 10; ++burst) {
+    const Moment readable = World::start + burst * 100ms;
+    for (int i = 2500; i > 0; --i) buses[0].push_back({readable - i * 10us, readable});
+    for (int i = 1100; i > 0; --i) buses[1].push_back({readable - i * 22us, readable});
+  }
+  const record::FilesOptions options = to_one_file(folder);
+  record::Files files{options, amiro::catalogue};
+  REQUIRE(files.open().ok());
+  record::Limits limits;
+  limits.duration = 2s;
+  record::Recorder recorder{ports_beside(world, buses), never_back, files, limits, false};
+  world.beside = [&recorder] { static_cast<void>(recorder.writing().step(0ms)); };
+  recorder.receive();
+  world.beside = nullptr;
+  while (recorder.writing().step(0ms)) world.pass(1ms);
+  CHECK(recorder.received() == 36'000);
+  const Read read = read_file(options.path, "candump");
+  REQUIRE(read.entries.size() == 36'000);
+  CHECK(std::is_sorted(read.entries.begin(), read.entries.end(),
+                       [](const log::Entry& a, const log::Entry& b) { return a.time < b.time; }));
+}
+
+TEST_CASE("recorder: of a flood on two buses sixteen looks of sixteen batches are gathered at a time") {
+  const Silence silence;
+  const Folder folder;
+  World world{1};
+  record::Files files{to_one_file(folder), amiro::catalogue};
+  REQUIRE(files.open().ok());
+  std::vector<record::Port> ports(2);
+  for (record::Port& port : ports) {
+    port.name = "can0";
+    port.capture = std::make_unique<Flood>(world);
+  }
+  record::Limits limits;
+  limits.count = 1;
+  limits.duration = 5s;
+  record::Recorder recorder{std::move(ports), never_back, files, limits, false};
+  recorder.receive();
+  while (recorder.writing().step(0ms)) world.pass(1ms);
+  CHECK(recorder.received() == 1);
+  // The first frame leaves when it was there a round before: see Merge.
+  for (const record::Port& port : recorder.ports())
+    CHECK(port.received == 2 * 16 * 16 * record::Capture::batch);
+}
+
+TEST_CASE("recorder: of more buses than it waits for at once all are recorded") {
+  const Silence silence;
+  const Folder folder;
+  World world{1};
+  std::vector<std::vector<Beside::Frame>> buses(70);
+  for (int i = 0; i < 70; ++i) {
+    const Moment came = World::start + i * 10ms;
+    buses[static_cast<std::size_t>(i)].push_back({came, came});
+  }
+  const record::FilesOptions options = to_one_file(folder);
+  record::Files files{options, amiro::catalogue};
+  REQUIRE(files.open().ok());
+  record::Limits limits;
+  limits.duration = 1s;
+  record::Recorder recorder{ports_beside(world, buses), never_back, files, limits, false};
+  recorder.receive();
+  while (recorder.writing().step(0ms)) world.pass(1ms);
+  CHECK(recorder.received() == 70);
+  CHECK(read_file(options.path, "candump").names.size() == 70);
+}
+
+TEST_CASE("recorder: what was dropped is in a file that no frame has come into, too") {
+  const Silence silence;
+  const Folder folder;
+  const World world{1};
+  record::FilesOptions options;
+  options.format = cli::logs::find_format("pcapng");
+  options.path = folder / "run.pcapng";
+  options.sync = false;
+  record::Files files{options, amiro::catalogue};
+  REQUIRE(files.open().ok());
+  log::Interfaces interfaces;
+  interfaces.add("can0");
+  interfaces.add("can1");
+  const std::vector<std::uint64_t> dropped{0, 3};
+  files.set_dropped(dropped, interfaces);
+  CHECK(files.finish());
+  const Read read = read_file(options.path, "pcapng");
+  CHECK(read.entries.empty());
+  CHECK(read.names == std::vector<std::string>{"can0", "can1"});
+  REQUIRE(read.recorded.size() == 2);
+  CHECK(read.recorded[0].dropped == 0);
+  CHECK(read.recorded[1].dropped == 3);
+}
+
+TEST_CASE("recorder: a ring waits two seconds for another program that begins one in the folder") {
+  const Silence silence;
+  const Folder folder;
+  record::FilesOptions options = to_one_file(folder);
+  options.split.time = 1h;
+  options.ring = 2;
+  int turn = ::open((folder / ".").c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  REQUIRE(::flock(turn, LOCK_EX) == 0);
+  {
+    const World world{1};
+    const Moment begin = world.now();
+    record::Files files{options, amiro::catalogue};
+    const auto opened = files.open();
+    CHECK_FALSE(opened.ok());
+    CHECK_THAT(opened.error.what, Catch::Contains("another program begins a recording in"));
+    CHECK(world.now() - begin == 2s);
+  }
+  World world{1};
+  const Moment begin = world.now();
+  world.beside = [&] {
+    if (turn >= 0 && world.now() - begin >= 1s) ::close(std::exchange(turn, -1));
+  };
+  record::Files files{options, amiro::catalogue};
+  CHECK(files.open().ok());
+  CHECK(world.now() - begin >= 1s);
+  CHECK(world.now() - begin < 1010ms);
+  CHECK(files.finish());
 }
 
 }  // namespace tool_clock_record_test

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <span>
 #include <string>
+#include <vector>
 
 #include <catch2/catch.hpp>
 
@@ -111,6 +113,31 @@ TEST_CASE("the highest bit of an unsigned word is no sign", "[output]") {
   CHECK(printed(field_of(64, false, {1, 0}), payload(0)) == "0");
 }
 
+TEST_CASE("values just beyond the numbers of 64 bits with a sign are printed exactly", "[output]") {
+  const auto least = payload(std::uint64_t{1} << 63);
+  const auto most = payload(INT64_MAX);
+  CHECK(printed(field_of(64, true, {1, 0}), least) == "-9223372036854775808");
+  CHECK(printed(field_of(64, true, {-1, 0}), least) == "9223372036854775808");
+  CHECK(printed(field_of(64, true, {1, 0}, {-1, 0}), least) == "-9223372036854775809");
+  CHECK(printed(field_of(64, true, {1, 0}, {1, 0}), most) == "9223372036854775808");
+  CHECK(printed(field_of(64, true, {-1, 0}), most) == "-9223372036854775807");
+  CHECK(printed(field_of(64, true, {-1, 0}, {-2, 0}), most) == "-9223372036854775809");
+  // The same of a field that is narrower, by what it is scaled with.
+  const base::Decimal scale{std::int64_t{1} << 56, 0};
+  CHECK(printed(field_of(8, true, scale), payload(0x80)) == "-9223372036854775808");
+  CHECK(printed(field_of(8, true, scale, {-1, 0}), payload(0x80)) == "-9223372036854775809");
+}
+
+/// A whole number over 10^places, in the notation of a field's value.
+std::string with_point(const std::string& digits, std::size_t places) {
+  const std::string padded =
+      std::string(digits.size() > places ? 0 : places + 1 - digits.size(), '0') + digits;
+  std::string text = padded.substr(0, padded.size() - places) + "." + padded.substr(padded.size() - places);
+  text.erase(text.find_last_not_of('0') + 1);
+  if (text.ends_with('.')) text.pop_back();
+  return text;
+}
+
 TEST_CASE("values of 16 digits and more are printed exactly", "[output]") {
   constexpr std::uint64_t whole_numbers[] = {
       1'234'567'890'123'456,     9'999'999'999'999'999,     10'000'000'000'000'000,
@@ -124,16 +151,25 @@ TEST_CASE("values of 16 digits and more are printed exactly", "[output]") {
     CHECK(printed(field_of(64, true, {1, 0}), payload(number)) == digits);
     CHECK(printed(field_of(64, true, {1, 0}), payload(negative)) == "-" + digits);
     for (std::size_t places = 1; places <= 18; ++places) {
-      const std::string padded =
-          std::string(digits.size() > places ? 0 : places + 1 - digits.size(), '0') + digits;
-      std::string text =
-          padded.substr(0, padded.size() - places) + "." + padded.substr(padded.size() - places);
-      text.erase(text.find_last_not_of('0') + 1);
-      if (text.ends_with('.')) text.pop_back();
+      const std::string text = with_point(digits, places);
       const auto field = field_of(64, true, {1, static_cast<std::int8_t>(-static_cast<int>(places))});
       CHECK(printed(field, payload(number)) == text);
       CHECK(printed(field, payload(negative)) == "-" + text);
     }
+  }
+}
+
+TEST_CASE("zeros at the end of a value say nothing, however many they are", "[output]") {
+  for (std::uint64_t digit = 1; digit <= 9; ++digit) {
+    std::uint64_t number = digit;
+    for (int zeros = 0; zeros < 18; ++zeros, number *= 10)
+      for (const std::uint64_t before : {std::uint64_t{0}, std::uint64_t{1'000'000'000'000'000'000}})
+        for (std::size_t places = 1; places <= 18; ++places) {
+          const auto field = field_of(64, true, {1, static_cast<std::int8_t>(-static_cast<int>(places))});
+          CAPTURE(before + number, places);
+          REQUIRE(printed(field, payload(before + number)) ==
+                  with_point(std::to_string(before + number), places));
+        }
   }
 }
 
@@ -206,6 +242,29 @@ TEST_CASE("a field's value is exact for any scale, offset, width and byte order"
       }
     }
   }
+}
+
+TEST_CASE("a field is read from where it is, anywhere in a CAN FD frame and in a longer message",
+          "[output]") {
+  using protocol::ByteOrder;
+  std::mt19937_64 random{4};
+  for (const unsigned width : {1U, 7U, 8U, 12U, 16U, 31U, 32U, 57U, 58U, 63U, 64U})
+    for (const ByteOrder order : {ByteOrder::little, ByteOrder::big})
+      for (unsigned first = 0; first + width <= 8 * 72; ++first) {
+        auto field = field_of(width, true, {1, 0});
+        const unsigned start = order == ByteOrder::little ? first : first / 8 * 8 + 7 - first % 8;
+        field.position = {static_cast<std::uint16_t>(start), static_cast<std::uint8_t>(width), order};
+        // As many bytes as there are to be: see can::FrameView and j1939::Transported.
+        const std::size_t end = field.position.bytes();
+        std::vector<std::uint8_t> bytes(end <= 8 ? 8 : end <= 64 ? 64 : end + 8);
+        for (std::uint8_t& byte : bytes) byte = static_cast<std::uint8_t>(random());
+        const std::int64_t raw = field.raw(std::span<const std::uint8_t>{bytes}.first(end));
+        const FieldText field_text{field};
+        char text[FieldText::room];
+        CAPTURE(width, first, order == ByteOrder::big);
+        REQUIRE(field_text.raw(bytes.data()) == raw);
+        REQUIRE(std::string(text, field_text.print(text, bytes.data())) == std::to_string(raw));
+      }
 }
 
 }  // namespace tool_output_field_text_test

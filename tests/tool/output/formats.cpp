@@ -1,5 +1,7 @@
+#include <array>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -17,8 +19,9 @@ using namespace ocm;
 
 /// What an output makes of frames that come this far apart.
 std::string shown(std::unique_ptr<cli::Output> output, const std::vector<std::string>& frames,
-                  base::Duration step = std::chrono::milliseconds{1}) {
-  client::Receiver receiver{amiro::catalogue};
+                  base::Duration step = std::chrono::milliseconds{1},
+                  const protocol::Catalogue& catalogue = amiro::catalogue) {
+  client::Receiver receiver{catalogue};
   log::Bytes out;
   output->begin(out);
   base::Time time{base::Duration{1'436'509'052'249'713'000}};
@@ -72,6 +75,40 @@ TEST_CASE("pretty lines are for a person", "[output]") {
   const std::string chosen = shown(cli::make_pretty(amiro::catalogue, selection({"gyro.y"}), false), frames);
   CHECK(std::count(chosen.begin(), chosen.end(), '\n') == 1);
   CHECK(chosen.find("y   -0.0175 deg/s") != std::string::npos);
+}
+
+TEST_CASE("pretty lines have a unit that all fields share at the end, behind a name, too", "[output]") {
+  static constexpr std::array<protocol::NamedValue, 1> names{{{5, "five"}}};
+  const auto lines = [](std::string_view unit) {
+    std::array<protocol::Field, 2> fields;
+    fields[0].name = "A";
+    fields[0].position = {0, 8, protocol::ByteOrder::little};
+    fields[0].unit = "h";
+    fields[1].name = "B";
+    fields[1].position = {8, 8, protocol::ByteOrder::little};
+    fields[1].unit = unit;
+    fields[1].values = names;
+    for (protocol::Field& field : fields) field.raw_max = 255;
+    protocol::FrameLayout layout;
+    layout.length = 2;
+    layout.fields = fields;
+    layout.address = {protocol::Address::By::identifier, false, 0x123};
+    protocol::Topic topic;
+    topic.name = "M";
+    topic.kind = protocol::Kind::message;
+    topic.board = protocol::no_board;
+    topic.frames = {&layout, 1};
+    protocol::Catalogue catalogue;
+    catalogue.topics = {&topic, 1};
+    return shown(cli::make_pretty(catalogue, {}, false), {"123#0305", "123#0304"},
+                 std::chrono::milliseconds{1}, catalogue);
+  };
+  CHECK(lines("h") ==
+        "    0.000000      123 M  A   3  B five (5) h\n"
+        "    0.001000      123 M  A   3  B   4 h\n");
+  CHECK(lines("V") ==
+        "    0.000000      123 M  A   3 h  B five (5 V)\n"
+        "    0.001000      123 M  A   3 h  B   4 V\n");
 }
 
 template <std::size_t columns>

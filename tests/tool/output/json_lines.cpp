@@ -145,9 +145,13 @@ TEST_CASE("JSON lines: the first and the last character of each length of UTF-8,
   CHECK(inside("\xF1\x80\x80 ") == R"(\\xf1\\x80\\x80 )");
   CHECK(inside("\xF5\x80\x80\x80") == R"(\\xf5\\x80\\x80\\x80)");
   CHECK(inside("\\x4") == R"(\\x4)");  // too short for a byte in words
-  CHECK(inside("\\x41") == R"(\\x5cx41)");
+  for (const std::string digits : {"41", "00", "40", "04", "0a", "A0", "ff", "F9"}) {
+    CAPTURE(digits);
+    CHECK(inside("\\x" + digits) == R"(\\x5cx)" + digits);
+  }
   CHECK(inside("\\y41") == R"(\\y41)");
   CHECK(inside("\\x4g") == R"(\\x4g)");
+  CHECK(inside("\\xg4") == R"(\\xg4)");
 }
 
 TEST_CASE("JSON lines: values that have names have them beside the numbers", "[output]") {

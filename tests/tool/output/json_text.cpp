@@ -32,10 +32,12 @@ Field field(std::string_view name, unsigned first_bit, unsigned width) {
 /// A message of eight bytes with these fields, and its lines.
 class Message {
  public:
-  explicit Message(std::vector<Field> fields) : fields_(std::move(fields)) {
+  explicit Message(std::vector<Field> fields,
+                   protocol::Address address = {protocol::Address::By::identifier, false, 0x123})
+      : fields_(std::move(fields)) {
     layout_.length = 8;
     layout_.fields = fields_;
-    layout_.address = {protocol::Address::By::identifier, false, 0x123};
+    layout_.address = address;
     topic_.name = "Message";
     topic_.kind = protocol::Kind::message;
     topic_.frames = {&layout_, 1};
@@ -94,6 +96,28 @@ TEST_CASE("JSON text: any time, whatever came before it", "[output]") {
         const std::string begin = R"({"time_ns":")" + std::to_string(ns) + R"(","bus":"can0","id":"123",)";
         REQUIRE(line_of(text, entry).substr(0, begin.size()) == begin);
       }
+}
+
+TEST_CASE("JSON text: an identifier has eight digits or three, and that of J1939 what it says in words, too",
+          "[output]") {
+  using protocol::Address;
+  const auto line = [](Address address, std::uint32_t id) {
+    const Message message{{field("a", 0, 8)}, address};
+    cli::JsonText text{message.catalogue()};
+    log::Entry entry = entry_of(0);
+    entry.id = id;
+    entry.format = address.extended ? can::Format::extended : can::Format::base;
+    return line_of(text, entry);
+  };
+  using Catch::Contains;
+  CHECK_THAT(line({Address::By::identifier, false, 0x7A5}, 0x7A5), Contains(R"("id":"7A5","topic":)"));
+  CHECK_THAT(line({Address::By::identifier, true, 0x1234'5678}, 0x1234'5678),
+             Contains(R"("id":"12345678","topic":)"));
+  CHECK_THAT(line({Address::By::identifier, true, 0x7A5}, 0x7A5), Contains(R"("id":"000007A5","topic":)"));
+  CHECK_THAT(line({Address::By::pgn, true, 0x18FE'EC00}, 0x0CFE'EC05),
+             Contains(R"("id":"0CFEEC05","priority":3,"pgn":"0FEEC","source":5,"destination":255,"topic":)"));
+  CHECK_THAT(line({Address::By::pgn, true, 0x18EF'0000}, 0x18EF'2103),
+             Contains(R"("id":"18EF2103","priority":6,"pgn":"0EF00","source":3,"destination":33,"topic":)"));
 }
 
 TEST_CASE("JSON text: a line has the fields that its frame has, of pages in any order", "[output]") {

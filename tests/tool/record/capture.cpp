@@ -329,6 +329,26 @@ TEST_CASE("an error that does not go away ends it") {
   CHECK_THAT(scene.capture->failure().what, Catch::Contains("can7") && !Catch::Contains("is gone"));
 }
 
+TEST_CASE("a read that a signal cuts short has no frame, and nothing is lost by it") {
+  Scene scene;
+  scene.arrive(3);
+  scene.played.set_error(EINTR);
+  CHECK(scene.read() == 0);
+  CHECK(scene.capture->state() == BusState::up);
+  CHECK(scene.read() == 3);
+  CHECK(scene.read() == 0);
+  CHECK(scene.capture->state() == BusState::up);
+}
+
+TEST_CASE("of a CAN interface the kernel keeps the times, and an adapter may be plugged in again") {
+  const Scene scene;
+  CHECK(scene.capture->name() == "can7");
+  CHECK(scene.capture->descriptor() == scene.played.socket);
+  CHECK(scene.capture->keeps_times());
+  CHECK(scene.capture->may_return());
+  CHECK(scene.capture->bit_rate() == 0);  // of a socket alone it is not known
+}
+
 TEST_CASE("in any order of frames, losses, errors, looks and reads every frame is received or counted") {
   for (unsigned seed = 1; seed <= 3000; ++seed) {
     INFO("seed " << seed);
