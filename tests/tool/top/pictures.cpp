@@ -239,7 +239,7 @@ TEST_CASE("top pictures: what was counted of a bus, of one and of several") {
   truck.topics = {&group, 1};
 
   Bus2 bus;
-  const auto anew = [&bus] { bus.models = Models{catalogue, 250'000}; };
+  const auto start_again = [&bus] { bus.models = Models{catalogue, 250'000}; };
   const auto counted = [&bus] {  // below the load, with its styles
     std::istringstream lines{bus.draw({200, 6})};
     std::string line, styles;
@@ -250,29 +250,29 @@ TEST_CASE("top pictures: what was counted of a bus, of one and of several") {
   const auto overflow = [&bus] {
     bus.model().take(entry(2s, cls::controller, {0, what::rx_overflow, 0, 0, 0, 0, 0, 0}, Format::error));
   };
-  anew();
+  start_again();
   overflow();
   CHECK(counted() == "|1 frame  1 error frame  1 overflow|    dim:7,bad:27");
   overflow();
   bus.models.lost("can0", 1);
   CHECK(counted() == "|2 frames  2 error frames  2 overflows  1 lost|    dim:8,bad:37");
-  anew();  // counters without a state
+  start_again();  // counters without a state
   bus.model().take(entry(2s, cls::counters, {0, 0, 0, 0, 0, 0, 104, 3}, Format::error));
   CHECK(counted() == "|TEC 104 REC 3  1 frame  1 error frame|    dim:22,bad:15");
-  anew();
+  start_again();
   for (int i = 0; i < 5; ++i) bus.model().take(entry(2500ms + i * 100ms, 0x510, {0, 0, 0, 1}));
   CHECK(counted() == "|5 frames  3 incomplete|    dim:8,warning:14");
-  anew();
+  start_again();
   bus.model().take(entry(2s, 0x510, {0, 0}));
   CHECK(counted() == "|1 frame  1 of a wrong length|    dim:7,warning:21");
-  anew();
+  start_again();
   ocm::can::AnyFrame fd;
   fd.id = 0x7F0;
   fd.length = 12;
   fd.flags = ocm::can::frame_flag::fd | ocm::can::frame_flag::bit_rate_switch;
   bus.model().take(ocm::log::Entry{morning + 2s, fd});
   CHECK(counted() == "|1 frame  1 unknown  1 CAN FD, not in the load|    dim:45");
-  anew();
+  start_again();
   for (std::uint32_t id = 0; id <= Model::most_unknown; ++id)
     bus.model().take(entry(2s, 0x100'0000 + id, {}, Format::extended));
   CHECK(counted() ==
