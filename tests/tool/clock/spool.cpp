@@ -69,8 +69,8 @@ TEST_CASE(
 }
 
 TEST_CASE("spool: what the disk does not take is said, and what comes next is in another file") {
+  bool full = false;  // the spool writes as long as it is there
   Spooled spooled;
-  bool full = false;
   spooled.world.disk = [&full](int, std::string_view text) {
     return full ? cli::Written{0, ENOSPC} : cli::Written{text.size(), 0};
   };
