@@ -378,7 +378,7 @@ class OnTheBus(Case):
         self.assertGreater(len(errors), 100)
         times = [int(sample["time_ns"]) for sample in self.objects(out) if sample.get("topic") == "gyroscope"]
         self.assertGreater(len(times), 100)  # of 200, and of more where it ran for longer
-        self.assertAlmostEqual((times[-1] - times[0]) / 5e6, len(times) - 1, delta=2)
+        self.assertAlmostEqual((times[-1] - times[0]) / 5e6, len(times) - 1, delta=2 + self.spare.slack / 5e-3)  # the first or the last one held up
         self.assertNotIn("incomplete", err)
         self.interrupt(sim)
         told = re.search(r"(\d+) error frames, (\d+) frames repeated", sim.communicate()[1])
