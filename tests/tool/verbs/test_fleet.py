@@ -286,6 +286,8 @@ class Pause(Line):
         out, _ = self.tool("goto", "AVR", "0", "5")
         self.assertEqual(out, "AVR: x 5 cm, y 0 cm, heading 0 deg\n")
         self.assertTrue(self.avr.paused)
+        self.tool("goto", "AVR", "0", "0")  # a stop ends no pause
+        self.assertTrue(self.avr.paused)
         self.assertRegex(self.tool("robots", "--listen", "1s")[0], r"AVR .* paused")
         self.assertEqual(self.tool("unpause", "all")[0], "AVR: goes on\nArduino: goes on\n")
         self.assertFalse(self.avr.paused)
