@@ -118,9 +118,15 @@ bool wait_for_input(std::span<pollfd> inputs, base::Duration longest) noexcept {
 }
 
 void catch_interrupts() {}
+void catch_hangups() {}
+void catch_broken_pipe() {}
 
 int interrupted() noexcept {
   return World::now_running().signal();
+}
+
+int interruptions() noexcept {
+  return interrupted() != 0 ? 1 : 0;
 }
 
 int exit_code_after_interrupt(int code) noexcept {

@@ -1,12 +1,8 @@
 // What others call a DBC file, or CSV: whatever is in it, each message is in the set that is analysed or left
-// out with a reason, its identifiers differ, and every mistake has its place and its remedy. The readers
-// belong to a program and not to a library: they are compiled here, with fmt in its headers.
-#define FMT_HEADER_ONLY
+// out with a reason, its identifiers differ, and every mistake has its place and its remedy.
 #include "ocm/base/utf8.hpp"
 
-#include "cli/analyse/messages.cpp"
-#include "cli/analyse/order.cpp"
-#include "cli/analyse/split.cpp"
+#include "cli/analyse/set.hpp"
 #include "generator/dbc/encoding.hpp"
 #include "generator/dbc/reader.hpp"
 #include "generator/spec/from_dbc.hpp"
