@@ -8,6 +8,9 @@
     runs.py programs BUILD LABELS TESTS
                                    the targets that tests run whose name the regular expression TESTS finds and none of whose
                                    labels LABELS does, as `ctest -LE LABELS -R TESTS` chooses them: on stdout, a line each.
+    runs.py without BUILD LABELS TESTS
+                                   all but these tests: on stdout a regular expression of them for `ctest -E`, then what
+                                   `all` builds without the programs that they alone run, a target a line.
     runs.py report [--left-out FILE]... JUNIT...
                                    of ctest's --output-junit: how many tests passed, which failed, which were skipped, whole
                                    or in part, which took longest; of the FILEs, which CMake has left out because a program is
@@ -94,20 +97,56 @@ def select(build, parts, wanted):
     return 0
 
 
-def print_programs(build, tests, chosen):
+def executables(build):
     listed = subprocess.run(["ninja", "-C", build, "-t", "targets", "all"], check=True, capture_output=True, text=True).stdout
-    build = os.path.abspath(build)
-    executables = {os.path.normpath(os.path.join(build, line.split(":")[0]))
-                   for line in listed.splitlines() if "EXECUTABLE_LINKER" in line}
-    used = paths(build, with_set_up(tests, chosen))
-    for path in sorted(executables & used):
-        print(os.path.relpath(path, build))
+    return {os.path.normpath(os.path.join(os.path.abspath(build), line.split(":")[0]))
+            for line in listed.splitlines() if "EXECUTABLE_LINKER" in line}
+
+
+def programs_of(build, tests, chosen):
+    """The programs of this build that the chosen tests run, as targets."""
+    used = executables(build) & paths(build, with_set_up(tests, chosen))
+    return sorted(os.path.relpath(path, os.path.abspath(build)) for path in used)
+
+
+def print_programs(build, tests, chosen):
+    for target in programs_of(build, tests, chosen):
+        print(target)
+
+
+def those(tests, labels, names):
+    return {name for name, test in tests.items() if re.search(names, name) and
+            not any(re.search(labels, label) for label in properties(test).get("LABELS", []))}
 
 
 def programs(build, labels, names):
     tests = known(build)
-    print_programs(build, tests, {name for name, test in tests.items() if re.search(names, name) and
-                                  not any(re.search(labels, label) for label in properties(test).get("LABELS", []))})
+    print_programs(build, tests, those(tests, labels, names))
+    return 0
+
+
+def inputs(build, target):
+    """What ninja makes before `target`, which only stands for it."""
+    shown = subprocess.run(["ninja", "-C", build, "-t", "query", target], check=True, capture_output=True, text=True).stdout
+    between = shown.partition("input:")[2].partition("outputs:")[0]
+    return [line.strip().lstrip("| ") for line in between.splitlines()[1:] if line.strip()]
+
+
+def everything(build, target="all"):
+    """The targets that `all` stands for: each folder has an `all` of its own."""
+    return [one for name in inputs(build, target)
+            for one in (everything(build, name) if name.endswith("/all") else [name])]
+
+
+def all_without(build, labels, names):
+    tests = known(build)
+    left = those(tests, labels, names)
+    theirs = set(programs_of(build, tests, left)) - set(programs_of(build, tests, set(tests) - left))
+    gone = {pathlib.PurePath(program).name for program in theirs}
+    print(f"^({'|'.join(sorted(map(re.escape, left)))})$")
+    for target in everything(build):
+        if pathlib.PurePath(target).name not in gone:
+            print(target)
     return 0
 
 
@@ -156,6 +195,8 @@ def main(arguments):
         return select(arguments[1], arguments[2].split(), arguments[3:])
     if len(arguments) == 4 and arguments[0] == "programs":
         return programs(*arguments[1:])
+    if len(arguments) == 4 and arguments[0] == "without":
+        return all_without(*arguments[1:])
     if arguments and arguments[0] == "report":
         files, without = arguments[1:], []
         while len(files) > 2 and files[0] == "--left-out":

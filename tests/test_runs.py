@@ -101,6 +101,25 @@ class Programs(unittest.TestCase):
         self.assertEqual(self.programs("lon", "^(unit_can|unit_log)$"), ["unit_can"])  # unit_log has the label long
         self.assertEqual(self.programs("long", "^no test$"), [])
 
+    def test_all_without_some(self):
+        def shown(tests):
+            done = subprocess.run([sys.executable, "-B", RUNS, "without", os.environ["BUILD"], "^slow$", tests], capture_output=True,
+                                  text=True, check=True)
+            return done.stdout.splitlines()
+        pattern, *targets = shown("^(unit_can|cli_bus|cli_goto_radio)$")  # the last one is slow, and stays
+        self.assertEqual(pattern, "^(cli_bus|unit_can)$")
+        self.assertNotIn("unit_can", targets)
+        self.assertIn("unit_base", targets)
+        self.assertIn("amiroctl", targets, "other tests run it, too")
+        self.assertIn("examples/example_1_frames", targets, "no test runs it, and it is compiled")
+
+    def test_what_runs_once_runs_with_sanitizers(self):
+        text = pathlib.Path(RUNS).parent.parent.joinpath("scripts", "test").read_text(encoding="utf-8")
+        variables = dict(re.findall(r"^(others|in_sanitize|once)='(.*)'$", text, re.MULTILINE))
+        once = runs.those(runs.known(os.environ["BUILD"]), variables["others"], variables["once"])
+        self.assertGreater(len(once), 20)
+        self.assertEqual({name for name in once if not re.search(variables["in_sanitize"], name)}, set())
+
     def test_paths_may_have_blanks(self):
         with tempfile.TemporaryDirectory(prefix="a tree ") as folder:
             with open(os.path.join(folder, "CTestTestfile.cmake"), "w", encoding="utf-8") as file:
