@@ -168,6 +168,7 @@ TEST_CASE("states: of a bus without a bit rate no load is known") {
   CHECK(state["buses"][0]["load"].is_null());
   CHECK(state["buses"][0]["worst_load"].is_null());
   CHECK(state["buses"][0]["rows"][0]["share"].is_null());
+  for (const char* const figure : {"viewers", "lost", "refused"}) CHECK(state[figure] == 0);
 }
 
 // --- the boards ---
@@ -308,8 +309,8 @@ TEST_CASE("states: a robot behind a central") {
 TEST_CASE("states: all robots, and the map's message") {
   CHECK(fleet_state("drive.txt", cli::Json::array(), cli::Json::array()).line() ==
         R"({"line":"drive.txt","own":false,"gone":"","scans":false,"map_by":"","unplaced":[],"robots":[]})");
-  CHECK(map_message(R"({"frame_id":"map"})", 1'700'000'000'000'000'005) ==
-        R"({"timestamp":{"sec":1700000000,"nsec":5},"frame_id":"map"})");
+  CHECK(map_message(R"({"frame_id":"map"})", 1'700'000'000'987'654'321) ==
+        R"({"timestamp":{"sec":1700000000,"nsec":987654321},"frame_id":"map"})");
 }
 
 TEST_CASE("states: a map comes once a second, and is no more than half a megabyte of it") {

@@ -427,6 +427,8 @@ class Serve(harness.Case):
         state = where(lambda s: s["paused"] and s["jumps"] == 1, "the jump")
         self.assertAlmostEqual(state["at_s"], 20, delta=0.2)
         self.assertAlmostEqual(state["length_s"], 29.9)
+        viewer.publish("/ocm/playback", {"speed": 0.5})
+        where(lambda s: s["speed"] == 0.5, "half the speed")
         viewer.publish("/ocm/playback", {"at_s": 5})  # back: only the newest sample is sent
         where(lambda s: s["jumps"] == 2, "the jump back")
         self.assertEqual(viewer.message("/gyroscope").fields["x"], round(50 * 0.0175, 4))

@@ -1,6 +1,7 @@
 """amiroctl serve robots: mappers behind a central as viewers meet them, on a central that is played on a pseudo terminal."""
 
 import base64
+import fcntl
 import json
 import math
 import os
@@ -130,6 +131,9 @@ class Robots(Case):
         self.robot(viewer, "AVR", lambda r: r["pose"], "its own place")
         viewer.publish("/ocm/fleet", {"robot": "AVR", "x_m": 1, "y_m": 0})
         self.says(viewer, "--start AVR=X,Y,DEG")
+        # Nothing can be drawn, and there is no map, though one is looked for each second.
+        late = self.viewer(port, "", "/ocm/map", "/ocm/fleet")
+        self.assertEqual({late.message().topic for _ in range(8)}, {"/ocm/fleet"})
 
     def test_one_robot_needs_no_start(self):
         self.central.robots = [self.avr]
@@ -395,6 +399,22 @@ class Robots(Case):
         self.central = Central(self.folder, [self.avr, self.arduino], link="ocm/central")
         self.addCleanup(self.central.close)
         self.state(viewer, lambda s: s["own"] and not s["gone"] and len(s["robots"]) == 2, "that it is back")
+
+    def test_it_looks_for_its_central_less_and_less_often(self):
+        """Half a second after it has gone, and a second after that; another program has its place, and nothing is there."""
+        server, _, _, _ = self.both()
+        begin = time.monotonic()
+        self.central.close()
+        os.unlink(self.central.path)
+        place = os.open(self.central.path + ".lock", os.O_RDWR)
+        self.addCleanup(os.close, place)
+        fcntl.flock(place, fcntl.LOCK_EX)
+        tries = 0
+        while tries < 3:  # the first of these words is no try
+            line = server.stderr.readline()
+            self.assertTrue(line, server.poll())
+            tries += "the central's line is gone" in line
+        self.assertGreaterEqual(time.monotonic() - begin, 1.5)
 
     def test_a_map_with_its_page(self):
         picture = os.path.join(self.folder, "room.svg")

@@ -1,0 +1,77 @@
+#include "cli/serve/live_bus.hpp"
+
+#ifdef OCM_HAS_WEBSOCKETS
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <unistd.h>
+#include <utility>
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "ocm/topics/amiro.hpp"
+
+#include "generator/spec/model.hpp"
+#include "tool/captured.hpp"
+
+namespace serve_live_bus_test {
+
+using namespace ocm;
+using namespace ocm::cli::serve;
+using Json = nlohmann::json;
+
+/// On which no frame comes; some have never reached its reader.
+class QuietBus final : public transport::Bus {
+ public:
+  explicit QuietBus(std::uint64_t lost) { counters_.lost = lost; }
+
+  [[nodiscard]] std::string_view name() const override { return "can97"; }
+  base::Result<bool> send(const can::Frame&) override { return true; }
+  base::Result<can::Received> receive(base::Duration) override { return base::Error::timed_out; }
+  transport::Outcome<void> subscribe(std::span<const can::Filter>) override { return {}; }
+  [[nodiscard]] int descriptor() const override { return -1; }
+  [[nodiscard]] const transport::BusCounters& counters() const override { return counters_; }
+  [[nodiscard]] const transport::Failure& failure() const override { return failure_; }
+
+ private:
+  transport::BusCounters counters_;
+  transport::Failure failure_;
+};
+
+TEST_CASE("live bus: what is lost of a bus is in its figures from the first moment") {
+  const spec::Model model;
+  ServeOptions options;
+  options.over = [looks = 0]() mutable { return looks++ != 0; };  // it looks once
+  PageServer server{amiro::catalogue, model, std::move(options), {"can97", true, false}, {"can97"}, 500'000};
+  test::Captured address{STDOUT_FILENO};
+  server.open();
+  CHECK(address.text().starts_with("http://127.0.0.1:"));
+  const ViewerId viewer = server.viewers().add();
+  const Channels& channels = server.channels();
+  for (const State state : {State::bus, State::boards, State::bounds, State::operator_})
+    REQUIRE(
+        server.viewers().subscribe(viewer, {static_cast<std::uint32_t>(state), channels.of(state)}).empty());
+  cli::Session session;
+  CHECK(serve_bus(server, session, std::make_unique<QuietBus>(3)) == 0);
+  std::map<State, Json> said;
+  while (const auto message = server.viewers().next(viewer, base::Time{}))
+    said[static_cast<State>(message->head[1])] = Json::parse(*message->payload);
+  REQUIRE(said.size() == 4);
+  CHECK(said[State::bus]["buses"][0]["name"] == "can97");
+  CHECK(said[State::bus]["buses"][0]["lost"] == 3);
+  CHECK(said[State::bus]["viewers"] == 1);
+  CHECK(said[State::boards]["boards"].size() == 3);
+  REQUIRE(said[State::boards]["findings"].size() == 1);
+  CHECK(said[State::boards]["findings"][0]["what"] == "3 frames lost on the way to this program");
+  CHECK(said[State::bounds]["rows"] == Json::array());
+  CHECK(said[State::operator_]["running"] == false);
+}
+
+}  // namespace serve_live_bus_test
+
+#endif
