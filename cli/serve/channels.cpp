@@ -115,18 +115,7 @@ void Publisher::go_on() {
 
 client::ReceiverCounters Publisher::counters() const {
   client::ReceiverCounters sum;
-  for (const client::Receiver& receiver : receivers_) {
-    const client::ReceiverCounters& one = receiver.counters();
-    sum.frames += one.frames;
-    sum.samples += one.samples;
-    sum.commands += one.commands;
-    sum.unknown += one.unknown;
-    sum.fd += one.fd;
-    sum.wrong_dlc += one.wrong_dlc;
-    sum.incomplete += one.incomplete;
-    sum.errors += one.errors;
-    sum.transport += one.transport;
-  }
+  for (const client::Receiver& receiver : receivers_) sum += receiver.counters();
   return sum;
 }
 

@@ -105,6 +105,21 @@ struct ReceiverCounters {
   [[nodiscard]] constexpr std::uint64_t faults() const noexcept {
     return unknown + remote + fd + wrong_dlc + incomplete + errors;
   }
+  /// Those of several receivers together.
+  constexpr ReceiverCounters& operator+=(const ReceiverCounters& other) noexcept {
+    frames += other.frames;
+    samples += other.samples;
+    commands += other.commands;
+    unknown += other.unknown;
+    remote += other.remote;
+    fd += other.fd;
+    wrong_dlc += other.wrong_dlc;
+    incomplete += other.incomplete;
+    errors += other.errors;
+    transport += other.transport;
+    unselected += other.unselected;
+    return *this;
+  }
 };
 
 /// Whether messages of J1939's transport protocol are put together, if the catalogue has J1939 at all.

@@ -162,6 +162,7 @@ TEST_CASE("publisher: what is counted is that of all interfaces") {
       CHECK(desk.lamp(2s, 1, interface) == Meaning::set_point);
       CHECK(desk.take(test::entry(3s, 0x7FF, {9}), interface) == Meaning::unknown);
       CHECK(desk.take(log::Entry{test::morning + 4s, fd}, interface) == Meaning::unknown);
+      desk.take(test::entry(5s, 0x510, {}, can::Format::base_remote), interface);
       desk.take(test::entry(5s, 0x510, {1, 2, 3}), interface);     // of three bytes
       desk.take(test::entry(6s, 0x510, {0, 0, 0, 1}), interface);  // its second frame does not come
       desk.take(test::entry(7s, 0, {0, 0, 0, 0, 0, 0, 0, 0}, can::Format::error), interface);
@@ -169,10 +170,11 @@ TEST_CASE("publisher: what is counted is that of all interfaces") {
     }
   }
   const auto sum = desk.publisher.counters();
-  CHECK(sum.frames == 30);
+  CHECK(sum.frames == 33);
   CHECK(sum.samples == 6);
   CHECK(sum.commands == 3);
   CHECK(sum.unknown == 3);
+  CHECK(sum.remote == 3);
   CHECK(sum.fd == 3);
   CHECK(sum.wrong_dlc == 3);
   CHECK(sum.incomplete == 3);

@@ -10,6 +10,7 @@
 
 #include "cli/serve/fleet_state.hpp"
 #include "cli/serve/state.hpp"
+#include "generator/spec/model.hpp"
 #include "tool/bus_model/bus.hpp"
 
 namespace serve_states_test {
