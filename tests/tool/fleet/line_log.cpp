@@ -28,6 +28,8 @@ TEST_CASE("line log: any piece comes back, as a line that can be read") {
     CHECK(said->text == text);
   }
   CHECK(to_log_line(base::Time{5s + 7us}, "a\n") == "(5.000007) a\\x0a\n");
+  // What is printed stays as it is, from the first such byte to the last, but for the backslash.
+  CHECK(to_log_line(base::Time{5s}, "\x1f !}~\x7f[]\\\xff") == "(5.000000) \\x1f !}~\\x7f[]\\x5c\\xff\n");
 }
 
 TEST_CASE("line log: what is no line of it") {

@@ -1,10 +1,17 @@
-// A central's line that goes while this program has it.
+// A central's line that goes while this program has it, and one that this program leaves.
 #include "cli/fleet/own_line.hpp"
 
+#include <array>
+#include <atomic>
 #include <chrono>
 #include <cstdlib>
 #include <fcntl.h>
 #include <string>
+#include <string_view>
+#include <sys/ioctl.h>
+#include <termios.h>
+#include <thread>
+#include <unistd.h>
 #include <utility>
 
 #include <catch2/catch.hpp>
@@ -45,6 +52,85 @@ TEST_CASE("own line: a line that is gone is said once, whether it is noticed by 
               "again and restart\n",
               path));
   }
+}
+
+/// A central that has much to pass on before it obeys: behind `stop` so many pieces of one byte, each once
+/// the last one was read.
+class Talkative {
+ public:
+  static constexpr int pieces = 60;
+
+  Talkative() : primary_(::posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC)) {
+    REQUIRE(primary_);
+    REQUIRE(::grantpt(primary_.get()) == 0);
+    REQUIRE(::unlockpt(primary_.get()) == 0);
+    path = ::ptsname(primary_.get());
+    secondary_ = host::Descriptor{::open(path.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC)};
+    REQUIRE(secondary_);
+    termios raw{};
+    ::tcgetattr(secondary_.get(), &raw);
+    ::cfmakeraw(&raw);
+    ::tcsetattr(secondary_.get(), TCSANOW, &raw);
+    talks_ = std::thread{[this] { talk(); }};
+  }
+  ~Talkative() { static_cast<void>(read_by_then()); }
+  Talkative(const Talkative&) = delete;
+  Talkative& operator=(const Talkative&) = delete;
+  /// The program has left: how many pieces it has read.
+  int read_by_then() {
+    over_ = true;
+    if (talks_.joinable()) talks_.join();
+    return read_;
+  }
+  std::string path;
+
+ private:
+  void talk() {
+    while (!over_ && heard_.find("stop\n") == std::string::npos) {
+      std::array<char, 100> room{};
+      const ssize_t size = ::read(primary_.get(), room.data(), room.size());
+      if (size > 0)
+        heard_.append(room.data(), static_cast<std::size_t>(size));
+      else
+        ::usleep(100);
+    }
+    while (!over_ && read_ < pieces && says("x")) ++read_;
+    if (!over_) static_cast<void>(says("\nfound 0\n"));
+  }
+  /// Until it is read. The kernel hands it on in its own time.
+  bool says(std::string_view text) {
+    if (::write(primary_.get(), text.data(), text.size()) != static_cast<ssize_t>(text.size())) return false;
+    for (int looks = 0; looks < 20 && waiting() == 0; ++looks) ::usleep(100);
+    while (!over_ && waiting() != 0) ::usleep(100);
+    return waiting() == 0;
+  }
+  [[nodiscard]] int waiting() const {
+    int count = 0;
+    ::ioctl(secondary_.get(), FIONREAD, &count);
+    return count;
+  }
+
+  host::Descriptor primary_, secondary_;
+  std::atomic<bool> over_ = false;
+  int read_ = 0;
+  std::string heard_;
+  std::thread talks_;
+};
+
+TEST_CASE("own line: it is left in command mode, for which a second is waited, whatever comes meanwhile") {
+  Talkative central;
+  auto port = transport::SerialPort::open(central.path);
+  REQUIRE(port);
+  std::chrono::steady_clock::time_point begin;
+  {
+    const cli::fleet::OwnLine line{
+        "robots", cli::fleet::Dongle{std::move(*port), mapper::server::Dialect::words, {}}, {}, nullptr};
+    begin = std::chrono::steady_clock::now();
+  }
+  const auto took = std::chrono::steady_clock::now() - begin;
+  const int pieces = central.read_by_then();
+  CAPTURE(pieces, took.count());
+  CHECK((pieces == Talkative::pieces || took >= 1s));
 }
 
 }  // namespace fleet_own_line_test

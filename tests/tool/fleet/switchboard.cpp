@@ -285,4 +285,14 @@ TEST_CASE("switchboard: a line that is unplugged while it is closed is closed on
   CHECK(bench.summary().find("stray") == std::string::npos);
 }
 
+TEST_CASE("switchboard: a reset ends a search, too") {
+  Bench bench;
+  CHECK(bench.after(1ms, "start\n") == "scanning\n");
+  CHECK(bench.board->due() == bench.now + 250ms);
+  CHECK(bench.after(1ms, "reset\n") == "reset\n");
+  CHECK(bench.board->due() == base::never);
+  CHECK(bench.after(250ms, "list\n") == "end of list\n");
+  CHECK(bench.summary().ends_with("server  nothing was lost\n"));  // no robot was found meanwhile
+}
+
 }  // namespace fleet_switchboard_test

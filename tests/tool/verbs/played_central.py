@@ -305,13 +305,15 @@ class Central:
 
 
 class Owner:
-    """A program that has a central's line, and knows no robots: others join it, one after the other. `heard` is what they ask."""
+    """A program that has a central's line: others join it, one after the other. `heard` is what they ask. It knows one robot at most:
+    `robot` makes its row of what was asked so far."""
 
     def __init__(self, folder, line):
         digits = 0x811C9DC5  # of the line's path, in the name of the socket [FNV-1a]
         for byte in os.path.realpath(line).encode():
             digits = (digits ^ byte) * 0x01000193 & 0xFFFFFFFF
         self.heard = []
+        self.robot = lambda heard: ""
         self.server = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         self.server.bind(os.path.join(folder, f"line-{digits:08x}.sock"))
         self.server.listen()
@@ -337,8 +339,9 @@ class Owner:
                     self.heard.append(request)
                     caller.send(self.answer(request))
 
-    @staticmethod
-    def answer(request):
+    def answer(self, request):
         if request.startswith("robots"):
-            return b"ok\nidle\n"
+            return f"ok\nidle\n{self.robot(self.heard)}".encode()
+        if request.startswith("go "):
+            return b"ok\n1"  # the number of the order
         return b"no\nit draws none\n" if request.startswith("map") else b"ok\nplayed"

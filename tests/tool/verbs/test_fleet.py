@@ -421,7 +421,7 @@ class TheLine(Line):
 
 class NoCentral(Case):
     def test_says_how_to_get_one(self):
-        for words in (["robots"], ["goto", "AVR", "0", "0"], ["pause", "AVR"], ["unpause", "AVR"], ["map", "a.svg"]):
+        for words in (["robots"], ["robots", "--scan", "60s"], ["goto", "AVR", "0", "0"], ["pause", "AVR"], ["unpause", "AVR"], ["map", "a.svg"]):
             _, err = self.run_tool(*words, code=1)
             self.assertIn("there is no central", err)
             self.assertIn("amiroctl sim --robots 2", err)

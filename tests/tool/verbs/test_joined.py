@@ -144,6 +144,29 @@ class HowLongALookTakes(Line):
                 self.assertEqual(owner.looks(), [look] if "--list" in verb else ["scan 0", look], verb)
 
 
+class WhetherARobotIsPaused(Line):
+    def test_it_has_said_for_a_second_only_that_it_stands_or_lives(self):
+        """One of which nothing comes any more may just have gone out of reach. The program that has the line is played; sent somewhere its
+        robot is there at once, and paused it is lost."""
+        owner = Owner(os.path.join(self.folder, "ocm"), self.central.path)
+        self.addCleanup(owner.close)
+
+        def row(heard, last, later):
+            sent = any(request.startswith("go ") for request in heard)
+            values = {"index": 0, "address": "C00000000000", "name": "AVR", "linked": 1, "confirmed": 1, "idle": 1, "located": 1,
+                      "lost": int("pause 0" in heard), "update": "0,0,0,0,0,0,0,0", "updated": 5_000_000_000, "heard": 5_000_000_000 + later,
+                      "last": last, "progress": "reached" if sent else "none", "order": int(sent)}
+            return "\t".join(f"{key}={value}" for key, value in values.items()) + "\n"
+        for last, later, paused in (("idle", 999_999_999, False), ("pong", 1_000_000_000, True), ("handshake", 2_000_000_000, False)):
+            with self.subTest(last=last, later=later):
+                owner.heard.clear()
+                owner.robot = lambda heard, last=last, later=later: row(heard, last, later)
+                out, err = self.run_tool("goto", "AVR", "90", "50")
+                self.assertEqual(out, "AVR: x 0 cm, y 0 cm, heading 0 deg\n")
+                self.assertEqual(err, "goto: AVR was paused, and sends updates now\n" if paused else "")
+                self.assertEqual("pause 0" in owner.heard, paused)
+
+
 class AMapIsAskedForAtTheEnd(Joined):
     """The line is served until it is closed, and then what draws the map may be gone."""
 
@@ -316,6 +339,7 @@ class AnOwnerThatOnlyKeepsTheLine(Joined):
         for line in keeper.stderr:
             said += line
             if "Ctrl-C ends it" in line:
+                self.said = said
                 return keeper
         return self.fail(f"it ended with {keeper.wait()}: {said}")
 
@@ -369,10 +393,14 @@ class AnOwnerThatOnlyKeepsTheLine(Joined):
     def test_without_robots(self):
         self.central.robots = []
         keeper = self.keep()
+        self.assertEqual(self.said, "central: no robots yet: `amiroctl robots --scan 3s` looks again\n"
+                                    f"central: has {self.central.path}; robots, goto and others join it; Ctrl-C ends it\n")
         self.central.robots = [self.avr]
         self.assertRegex(self.tool("robots", "--listen", "1s")[0], "AVR .* idle")
-        self.interrupt(keeper)
+        self.assertEqual(self.ask(self.call(greet=False), b"hello 2 goto"), b"")
+        _, err = self.interrupt(keeper)
         self.assertEqual(keeper.returncode, 130)
+        self.assertRegex(err, r"central: 1 program joined, [1-9]\d* turned away\n")
 
     def test_its_socket_is_removed(self):
         keeper = self.keep()

@@ -1,7 +1,9 @@
 """amiroctl map: what its files hold, how it agrees with true walls, and what is said when it fails."""
 
+import contextlib
 import json
 import os
+import pty
 import re
 import resource
 import signal
@@ -63,7 +65,7 @@ class Map(Case):
         self.assertTrue(0 < figures["border_known"] <= 1, figures)
         self.assertLess(figures["free_m2"], 1.3)  # of 1.2 square metres
         self.assertGreaterEqual(figures["goals"], 1)
-        self.assertTrue(figures["updates"] < figures["beams"] <= 4 * figures["updates"], figures)  # of four sensors
+        self.assertEqual(figures["beams"], 4 * figures["updates"], figures)  # of four sensors
         for file in (svg, png, pgm):
             self.assertIn(f"map: {file}", err)
         texts = ["".join(element.itertext()).strip() for element in
@@ -114,6 +116,31 @@ class Map(Case):
         self.assertLess(time.monotonic() - begin, 11)
         self.assertNotIn("{U,", "".join(self.avr.heard))
         self.check_drawn(file)
+
+    def test_a_beam_that_ends_at_another_robot_is_one_of_its_four(self):
+        self.avr.x = self.avr.y = 0.5
+        self.avr.start = (0.5, 0.5, 0.0)
+        self.central.robots.append(Robot("Arduino", pose=(1.1, 0.5, 0.0)))  # before the wall that the AVR sees ahead
+        out, _ = self.map(self.path("a.pgm"), "--watch", "--json", "--start", "AVR=0.5,0.5,0", "--start", "Arduino=1.1,0.5,0", duration="3s")
+        figures = json.loads(out)
+        self.assertEqual(figures["robots"], 2)
+        self.assertGreater(figures["updates"], 0)
+        self.assertEqual(figures["beams"], 4 * figures["updates"], figures)
+
+    def test_on_a_terminal_it_says_each_ten_seconds_how_far_it_is(self):
+        terminal, end = pty.openpty()
+        self.addCleanup(os.close, terminal)
+        tool = self.start("map", self.path("a.pgm"), "--watch", "--duration", "12s", "--scan", "200ms", stderr=end)
+        os.close(end)
+        tool.communicate(timeout=60)
+        said = b""
+        with contextlib.suppress(OSError):  # its end
+            while piece := os.read(terminal, 4096):
+                said += piece
+        self.assertEqual(tool.returncode, 0, said)
+        told = re.findall(rb"map: (\d+) s: [01]\.\d\d m2 free, [1-9]\d* updates\r\n", said)
+        self.assertEqual(len(told), 1, said)
+        self.assertGreaterEqual(int(told[0]), 10)
 
     def check_drawn(self, file):
         """Some of the room is free."""
