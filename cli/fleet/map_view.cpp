@@ -73,7 +73,7 @@ int view_map(const MapOptions& options, JoinedLine& line) {
     bool any = false;
     whole = true;
     for (const std::string& file : options.files) {
-      const std::string form = std::filesystem::path{file}.extension().string().substr(1);
+      const std::string form = file.substr(file.rfind('.') + 1);  // as is_map_file: of `.svg`, too
       const auto text = text_of(line, form);
       if (!text) break;  // it has ended
       const Drawn drawn = write(file, form, *text, line);

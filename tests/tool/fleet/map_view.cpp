@@ -78,6 +78,10 @@ TEST_CASE("map view: a PGM has its YAML beside it, which names it; at the other'
   CHECK(bench.code == cli::exit_success);
   CHECK(bench.out.starts_with(fmt::format("{{\"watched\":\"{}\",\"seconds\":", who)));
   CHECK(bench.out.ends_with(",\"drawn\":1}\n"));
+  bench.views({".pgm", "d.pgm"}, {image, about});  // a name that is only an ending is one, too
+  CHECK(bench.code == cli::exit_success);
+  CHECK(bench.content(".pgm") == image);
+  CHECK(bench.content(".pgm.yaml") == "image: .pgm\nresolution: 0.040\n");
 }
 
 TEST_CASE("map view: a map of which nothing was drawn yet is none, and a failure where none comes") {
