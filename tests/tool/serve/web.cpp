@@ -184,15 +184,17 @@ TEST_CASE("web: whatever is refused is counted") {
     client.say(request);
     return client.hear(words);
   };
-  CHECK(answer(upgrade(server.place, subprotocol, "8"), "version 13").starts_with("HTTP/1.1 400"));
+  CHECK_THAT(answer(upgrade(server.place, subprotocol, "8"), "version 13"),
+             Catch::Contains(" 400 Bad Request\r\n"));
   CHECK((*server.web)->refused() == 1);
   static_cast<void>(answer(upgrade(server.place, ""), "offer the subprotocol"));
   CHECK((*server.web)->refused() == 2);
   const std::string of_other = std::string{subprotocol} + "Origin: http://evil.example\r\n";
-  CHECK(answer(upgrade(server.place, of_other), "may not connect").starts_with("HTTP/1.1 403"));
+  CHECK_THAT(answer(upgrade(server.place, of_other), "may not connect"),
+             Catch::Contains(" 403 Forbidden\r\n"));
   CHECK((*server.web)->refused() == 3);
-  CHECK(answer("GET /none HTTP/1.1\r\nHost: " + server.place + "\r\n\r\n", "no such page")
-            .starts_with("HTTP/1.1 404"));
+  CHECK_THAT(answer("GET /none HTTP/1.1\r\nHost: " + server.place + "\r\n\r\n", "no such page"),
+             Catch::StartsWith("HTTP/1.1 404"));
   CHECK((*server.web)->refused() == 4);
   CHECK(server.viewers.count() == 0);
 }
