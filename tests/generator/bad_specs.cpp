@@ -8,6 +8,7 @@
 #include <sstream>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <catch2/catch.hpp>
@@ -354,6 +355,62 @@ TEST_CASE("a file may be as large as is said, and not a byte larger") {
   CHECK(problems[0] == ocm::spec::Problem{file.string(),
                                           "the file is larger than " + std::to_string(size - 1) + " bytes",
                                           "a spec is smaller"});
+}
+
+TEST_CASE("what does not end is larger than is allowed, however much of it is read at a time") {
+  for (const std::size_t most : {0U, 1U, 65'535U, 65'536U, 65'537U, 131'072U}) {
+    CAPTURE(most);
+    std::vector<ocm::spec::Problem> problems;
+    CHECK_FALSE(
+        ocm::spec::read_document("/dev/zero", "a spec", "spec/topics.json", problems, most).has_value());
+    REQUIRE(problems.size() == 1);
+    CHECK(problems[0].what == "the file is larger than " + std::to_string(most) + " bytes");
+  }
+}
+
+TEST_CASE("an unknown member of any part of a spec is named, with those that there are") {
+  using Pointer = nlohmann::json::json_pointer;
+  const auto good = nlohmann::json::parse(read("tests/generator/golden/whole.json"));
+  const auto problems = [](const nlohmann::json& spec) {
+    std::vector<std::string> lines;  // without their numbers
+    for (const std::string& line : printed(ocm::spec::parse(spec.dump(1), "f").problems))
+      lines.push_back(line.substr(line.find(": ") + 2));
+    return lines;
+  };
+  CHECK(problems(good).empty());
+  const std::pair<std::string, std::string> rows[] = {
+      {"",
+       "$schema, robot, namespace, description, byte_order, bus, defaults, boards, topics, messages, "
+       "attributes, attribute_definitions"},
+      {"/bus", "bit_rate, data_bit_rate, source"},
+      {"/defaults", "period, deadline, jitter, priority, timeout, source"},
+      {"/boards/0", "name, description, mcu, clock_hz, can_clock_hz, source, attributes"},
+      {"/topics/2",
+       "name, alias, description, kind, role, geometry, id, count, board, byte_order, period, "
+       "shortest_period, deadline, jitter, priority, timeout, frames, source"},
+      {"/topics/2/frames/0", "name, description, id, count, dlc, byte_order, fields, derived, source"},
+      {"/topics/2/frames/0/fields/0",
+       "name, description, byte, bit, type, byte_order, scale, offset, unit, unit_name, range, values, "
+       "flags, source"},
+      {"/topics/5/geometry", "radius, first, step"},
+      {"/topics/5/frames/0/derived/0",
+       "name, description, of, law, at_one, offset, noise, unit, range, source"},
+      {"/messages/0",
+       "name, alias, description, id, pgn, format, length, fd, sender, other_senders, period, "
+       "shortest_period, deadline, jitter, send_type, byte_order, fields, attributes, source"},
+      {"/messages/0/fields/0",
+       "name, description, byte, bit, type, byte_order, scale, offset, unit, range, values, flags, "
+       "selector, selected, start, receivers, attributes, source"},
+      {"/messages/4/fields/7/values/0", "raw, name"},
+      {"/attribute_definitions/0", "of, name, type, min, max, values, default"}};
+  for (const auto& [where, known] : rows) {
+    CAPTURE(where);
+    nlohmann::json bad = good;
+    REQUIRE(bad[Pointer{where}].is_object());
+    bad[Pointer{where}]["zzz"] = 1;
+    CHECK(problems(bad) ==
+          std::vector<std::string>{where + R"(/zzz: unknown member "zzz"; one of )" + known});
+  }
 }
 
 TEST_CASE("a file that is not there, or is no file") {

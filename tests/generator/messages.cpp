@@ -114,6 +114,36 @@ TEST_CASE("messages: every member") {
   CHECK(model.messages[2].length == 0);
 }
 
+TEST_CASE("messages: the catalogue says of each what its spec does") {
+  const auto loaded = spec::parse(
+      read(std::filesystem::path{OCM_SOURCE_DIR} / "tests/generator/good_messages.json"), "f.json");
+  REQUIRE(loaded.spec);
+  const auto& topics = loaded.spec->catalogue().topics;
+  REQUIRE(topics.size() == 3);
+  CHECK(topics[0].name == "EEC1");
+  CHECK(topics[0].is_message());
+  REQUIRE(topics[0].aliases.size() == 1);
+  CHECK(topics[0].aliases[0] == "eec");
+  CHECK(topics[0].board == 0);
+  CHECK(topics[0].cycle == 20ms);
+  CHECK(topics[0].shortest_period == 0ms);
+  CHECK(topics[0].source == "by hand");
+  REQUIRE(topics[0].frames.size() == 1);
+  CHECK(topics[0].frames[0].length == 8);
+  CHECK(topics[0].frames[0].address == Address{Address::By::pgn, true, 0x18F0'04FE});
+  CHECK_FALSE(topics[0].frames[0].fd);
+  CHECK(topics[1].board == 1);
+  CHECK(topics[1].cycle == 0ms);
+  CHECK(topics[1].shortest_period == 5ms);
+  CHECK(topics[1].deadline == 10ms);
+  CHECK(topics[1].jitter == 1ms);
+  CHECK(topics[1].source.empty());
+  CHECK(topics[1].frames[0].fd);
+  CHECK(topics[1].frames[0].fields.size() == 4);
+  CHECK(topics[2].board == protocol::no_board);
+  CHECK(topics[2].frames[0].fields.empty());
+}
+
 TEST_CASE("messages: the length is that of the shortest frame that has all fields") {
   const auto length = [](unsigned byte) {
     return parse(of_fields(R"({"name": "a", "type": "u8", "byte": )" + std::to_string(byte) + "}"))

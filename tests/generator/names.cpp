@@ -1,11 +1,15 @@
 // Names of specs and units, at the edges of what each may be.
 #include "generator/spec/names.hpp"
 
+#include <chrono>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <catch2/catch.hpp>
+
+#include "generator/spec/node_reader.hpp"
 
 namespace generator_names_test {
 
@@ -92,6 +96,25 @@ TEST_CASE("names: of units") {
     CAPTURE(unit);
     CHECK(spec::unit_name(unit) == name);
   }
+}
+
+TEST_CASE("names: of a duration's units the largest that it is a whole number of") {
+  using namespace std::chrono_literals;
+  const std::pair<base::Duration, const char*> rows[] = {{1ns, "1ns"},
+                                                         {999ns, "999ns"},
+                                                         {1001ns, "1001ns"},
+                                                         {1us, "1us"},
+                                                         {999us, "999us"},
+                                                         {1'001us, "1001us"},
+                                                         {1ms, "1ms"},
+                                                         {13'334us, "13334us"},
+                                                         {1'001ms, "1001ms"},
+                                                         {1s, "1s"},
+                                                         {65'535s, "65535s"},
+                                                         {60s, "60s"},
+                                                         {1'000'001us, "1000001us"},
+                                                         {0ns, "0s"}};
+  for (const auto& [duration, text] : rows) CHECK(spec::print(duration) == text);
 }
 
 TEST_CASE("names: the nearest has one edit, and one more for every three letters; the first of equals") {

@@ -314,6 +314,20 @@ TEST_CASE("the least and the greatest integer of sentences may be one, and not t
   CHECK(is_told(8, 7));
 }
 
+TEST_CASE("what is no file of sentences at all is told what one has in it") {
+  using ocm::spec::Problem;
+  const auto only = [](const std::string& text) {
+    const auto loaded = ocm::spec::parse_sentences(text, "s.json");
+    REQUIRE(loaded.problems.size() == 1);
+    return loaded.problems[0];
+  };
+  CHECK(only("") == Problem{"s.json:1:1", "the file is empty",
+                            "a file of sentences is a JSON object with robot, description, integer, packet, "
+                            "sentences and packed"});
+  CHECK(only(std::string(33, '[') + std::string(33, ']')) ==
+        Problem{"s.json:1", "nested deeper than 32 levels", "a file of sentences needs 7 levels at most"});
+}
+
 TEST_CASE("any bytes are a problem of the sentences, or sentences") {
   for (const char* text :
        {"", "{", "[]", "null", "{\"sentences\": [1]}", "\xFF\xFE", "{\"packed\": {\"fields\": [[]]}}"}) {

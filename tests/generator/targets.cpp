@@ -1,7 +1,9 @@
 // What generated files make of names, texts and numbers that few specs have, at the edges of each.
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <catch2/catch.hpp>
@@ -200,6 +202,105 @@ TEST_CASE("targets: names of a DBC file have 32 characters, and each is given ou
   generate::DbcNames other;
   other.expect(longest + "b");
   CHECK(other.unique(longest + "c") == longest);
+}
+
+TEST_CASE("targets: values of one name have their numbers behind it in C++, 0 too, and no other's name") {
+  const std::string text = made("cpp", R"({"robot": "r", "messages": [{"name": "M", "id": 1, "fields": [
+        {"name": "x", "byte": 0, "type": "u8", "values": [{"raw": 1, "name": "a.b"}, {"raw": 0, "name": "a-b"},
+         {"raw": 5, "name": "a_b_7"}, {"raw": 7, "name": "a b"}, {"raw": 9, "name": "c"}]}]}]})");
+  CHECK(has(text, "    a_b = 1,\n    a_b_0 = 0,\n    a_b_7 = 5,\n    a_b_7_ = 7,\n    c = 9,\n"));
+}
+
+TEST_CASE("targets: a DBC file says how often messages come, where any message says so") {
+  const auto times = [](const std::string& members) {
+    return made("dbc", R"({"robot": "r", "messages": [{"name": "M", "id": 1, "fields": []},
+      {"name": "N", "id": 2)" +
+                           members + R"(, "fields": []}]})");
+  };
+  for (const auto& [member, attribute] :
+       {std::pair{"period", "GenMsgCycleTime"}, std::pair{"shortest_period", "GenMsgDelayTime"}}) {
+    CAPTURE(member);
+    const auto with = [&, name = std::string{member}](const std::string& time) {
+      return times(", \"" + name + "\": \"" + time + "\"");
+    };
+    const std::string definition = "BA_DEF_ BO_ \"" + std::string{attribute} + "\" ";
+    const std::string value = "BA_ \"" + std::string{attribute} + "\" BO_ ";
+    CHECK_FALSE(has(times(""), attribute));
+    CHECK_FALSE(has(times(""), "GenMsg"));
+    CHECK(has(with("10ms"), definition + "INT 0 2147483647 ;\n"));
+    CHECK(has(with("10ms"), value + "2 10;\n"));
+    CHECK_FALSE(has(with("10ms"), value + "1 "));
+    CHECK(has(with("500us"), definition + "FLOAT 0 2147483647 ;\n"));
+    CHECK(has(with("500us"), value + "2 0.5;\n"));
+    const std::string_view other = attribute == std::string_view{"GenMsgDelayTime"} ? "Cycle" : "Delay";
+    CHECK_FALSE(has(with("10ms"), other));
+  }
+}
+
+TEST_CASE("targets: in a spec CAN FD is said where the length does not say it") {
+  const auto said = [](const std::string& members) {
+    const std::string text =
+        made("spec", R"({"robot": "r", "messages": [{"name": "M", )" + members + R"(, "fields": []}]})");
+    return std::string{has(text, R"("fd": true)") ? "true" : has(text, R"("fd")") ? "other" : "nothing"};
+  };
+  CHECK(said(R"("id": 1, "length": 8)") == "nothing");
+  CHECK(said(R"("id": 1, "length": 8, "fd": true)") == "true");
+  CHECK(said(R"("id": 1, "length": 9)") == "nothing");
+  CHECK(said(R"("id": 1, "length": 64, "fd": true)") == "nothing");
+  CHECK(said(R"("pgn": "0xFEF1", "length": 8, "fd": true)") == "true");
+  CHECK(said(R"("pgn": "0xFEF1", "length": 9)") == "nothing");
+  CHECK(said(R"("pgn": "0xFEF1", "length": 9, "fd": true)") == "true");
+}
+
+TEST_CASE("targets: in C++ a number that not every double can hold becomes one in so many words") {
+  const auto physical = [](const std::string& type) {
+    return made("cpp", of_topic(R"({"name": "x", "byte": 0, "type": ")" + type + R"(", "unit": "V"})"));
+  };
+  for (const char* type : {"u8", "i32", "u32"})
+    CHECK(has(physical(type), " x_V() const noexcept { return x; }\n"));
+  for (const char* type : {"i33", "u33", "u63", "i64"})
+    CHECK(has(physical(type), " x_V() const noexcept { return static_cast<double>(x); }\n"));
+}
+
+/// Whether a header has a line as it is, and not what it is broken into: up to 110 columns.
+void check_fits(const std::string& text, const std::string& line, const std::string& broken) {
+  CAPTURE(line, line.size());
+  CHECK(has(text, "\n" + line + "\n") == (line.size() <= 110));
+  CHECK(has(text, "\n" + broken + "\n") == (line.size() > 110));
+}
+
+TEST_CASE("targets: a line of C++ may be full, and is broken where it has one letter more") {
+  for (const std::size_t size : {11U, 12U}) {
+    const std::string rest(size - 1, 'a');
+    const std::string text =
+        made("cpp", R"({"robot": "r", "namespace": "r", "bus": {"bit_rate": 500000, "source": "s"},
+          "boards": [{"name": "b", "mcu": "m", "source": "s"}], "topics": [{"name": "t)" +
+                        rest + R"(", "id": 16, "board": "b", "source": "s",
+          "frames": [{"name": "cccccc", "id": 16, "count": 2, "dlc": 0, "fields": []}]}]})");
+    const std::string head = "    for (std::size_t i = 0; i < value.cccccc.size(); ++i)";
+    const std::string body = "value.cccccc[i] = T" + rest + "Cccccc::decode(all[i]);";
+    CHECK((head + " " + body).size() == 99 + size);
+    check_fits(text, head + " " + body, head + "\n      " + body);
+  }
+  // A board's topics: on one line, or on a second one alone, or broken there, too.
+  for (const std::size_t letters : {63U, 64U, 75U, 76U}) {
+    const std::string first(39, 'a'), second(letters - 41, 'b');
+    const auto topic = [](const std::string& name, int id) {
+      return R"({"name": ")" + name + R"(", "id": )" + std::to_string(id) +
+             R"(, "board": "b", "source": "s", "frames": [{"dlc": 0, "fields": []}]})";
+    };
+    const std::string text =
+        made("cpp", R"({"robot": "r", "namespace": "r", "bus": {"bit_rate": 500000, "source": "s"},
+          "boards": [{"name": "b", "mcu": "m", "source": "s"}], "topics": [)" +
+                        topic("a" + first, 16) + ", " + topic("b" + second, 17) + "]}");
+    const std::string start = "  using sensors =", list = "ocm::protocol::TopicList<A" + first + ",";
+    const std::string last = "B" + second + ">;";
+    CAPTURE(letters);
+    CHECK((start + " " + list + " " + last).size() == 47 + letters);
+    CHECK(has(text, start + " " + list + " " + last + "\n") == (letters <= 63));
+    CHECK(has(text, start + "\n      " + list + " " + last + "\n") == (letters > 63 && letters <= 75));
+    CHECK(has(text, start + " " + list + "\n" + std::string(43, ' ') + last + "\n") == (letters > 75));
+  }
 }
 
 }  // namespace generator_targets_test

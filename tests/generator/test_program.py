@@ -304,7 +304,7 @@ class Program(unittest.TestCase):
     def test_text_that_would_mean_something_in_markdown(self):
         """An underscore within a word means nothing; one beside it, and what begins a list or a heading, does."""
         fields = [{"name": "f", "byte": 0, "type": "u8"}]
-        for text, shown in (("0_0 9_9 a_z A_Z z_0 é_é", None), ("_a", r"\_a"), ("a_", r"a\_"), ("a _ b", r"a \_ b"), ("-_a", r"\-\_a"), ("a_-", r"a\_-"),
+        for text, shown in (("0_0 9_9 a_z A_Z z_0 é_é ŀ_ŀ", None), ("_a", r"\_a"), ("a_", r"a\_"), ("a _ b", r"a \_ b"), ("-_a", r"\-\_a"), ("a_-", r"a\_-"),
                             ("- a + b = c > d # e", r"\- a \+ b \= c \> d \# e"), ("a-b a+b a=b a>b a#b", None),
                             ("*a* `b` <c> [d] |e| ~f~", r"\*a\* \`b\` \<c> \[d\] \|e\| \~f\~"),
                             ("{a} (b) !c 1.d", None), ("a\tb\n\nc", "a b c"), ("\x7fa\x7f\x1fb", "a b"), ("a  b", None)):
@@ -318,11 +318,11 @@ class Program(unittest.TestCase):
         """In code only what ends it means something; the place that a heading is found at has letters, digits, hyphens and underscores."""
         for name, shown in (("on", "`on`"), ("a|b", r"`a\|b`"), ("a\x7f b\x1f~", "`a b~`"), ("`|*", r"`` `\|* ``")):
             field = {"name": "f", "byte": 0, "type": "u8", "values": {name: 1}}
-            self.spec.write_text(json.dumps({"robot": "x", "messages": [{"name": "AZ.az+09_-", "id": 1, "length": 1, "fields": [field]}]}))
+            self.spec.write_text(json.dumps({"robot": "x", "messages": [{"name": "AZ.az+09_-ŀ", "id": 1, "length": 1, "fields": [field]}]}))
             done = run(self.spec, "--to", "markdown", "-o", "-")
             self.assertEqual((done.returncode, done.stderr), (0, ""), name)
             self.assertIn(f"| f | byte 0 | u8 |  |  | 1 {shown}. |\n", done.stdout)
-            self.assertIn("](#azaz09_-) | ", done.stdout)
+            self.assertIn("](#azaz09_-ŀ) | ", done.stdout)
 
     def test_start_values_in_markdown(self):
         """Of the upper half of 64 bits the page has none: there is no decimal number for it here."""
@@ -355,6 +355,20 @@ class Program(unittest.TestCase):
                 self.assertEqual((done.returncode, done.stderr), (0, ""), (width, target))
                 for each in words:
                     self.assertIn(each, done.stdout, (width, target))
+
+    def test_a_line_of_c_may_be_full(self):
+        """One letter more, and it is broken."""
+        for size in (12, 13):
+            name = "a" * size
+            self.spec.write_text(json.dumps({
+                "robot": "x", "namespace": "x", "bus": {"bit_rate": 500000, "source": "s"}, "boards": [{"name": "b", "mcu": "m", "source": "s"}],
+                "topics": [{"name": "t", "id": 1, "board": "b", "source": "s", "frames": [{"fields": [{"name": name, "byte": 0, "type": "u24"}]}]}]}))
+            done = run(self.spec, "--to", "c", "-o", "-")
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+            line = f"  const uint32_t {name}_bits = (uint32_t)data[0] | ((uint32_t)data[1] << 8) | ((uint32_t)data[2] << 16);"
+            self.assertEqual(len(line), 98 + size)
+            lines = done.stdout.splitlines()
+            self.assertEqual((line in lines, f"  const uint32_t {name}_bits =" in lines), (size == 12, size == 13))
 
     def test_messages_of_the_names_of_the_helpers_of_c(self):
         helpers = ("at_most_u32", "at_most_u64", "held_i32", "held_i64", "nearest", "within", "nearest_u64", "float_of", "bits_of_float",

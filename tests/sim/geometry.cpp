@@ -4,6 +4,8 @@
 
 #include <catch2/catch.hpp>
 
+#include "sim/physics/body.hpp"
+
 namespace sim_geometry_test {
 
 using namespace ocm::sim;
@@ -27,6 +29,32 @@ TEST_CASE("geometry: the nearest point of a wall is beside, or an end") {
   CHECK(nearest_point(wall, {0, 3}) == wall.a);
   CHECK(nearest_point(wall, {6, 0}) == wall.b);
   CHECK(nearest_point({wall.a, wall.a}, {6, 0}) == wall.a);
+}
+
+TEST_CASE("geometry: the way out is that of what a disc is deepest in, and of equals that of the first") {
+  Push push;
+  CHECK_FALSE(push.needed());
+  const Vector centre{0.75, 0};
+  push.consider(centre, {1.25, 0}, 0.5);  // beside it
+  CHECK_FALSE(push.needed());
+  push.consider(centre, {1, 0}, 0.5);
+  CHECK(push.needed());
+  CHECK((push.depth_m == 0.25 && push.way == Vector{-0.25, 0}));
+  push.consider(centre, {0.75, 0.25}, 0.5);  // as deep
+  push.consider(centre, {1.125, 0}, 0.5);    // less
+  CHECK((push.depth_m == 0.25 && push.way == Vector{-0.25, 0}));
+  push.consider(centre, {0.75, 0.125}, 0.5);  // more
+  CHECK((push.depth_m == 0.375 && push.way == Vector{0, -0.375}));
+  push.consider(centre, centre, 0.5);  // in its middle, from which there is no way
+  CHECK((push.depth_m == 0.375 && push.way == Vector{0, -0.375}));
+
+  const Segment above{{-1, 1}, {1, 1}}, ahead{{1, -1}, {1, 1}};
+  CHECK(push_out({above, ahead}, {0.5, 0.5}, 1).way == Vector{0, -0.5});
+  CHECK(push_out({ahead, above}, {0.5, 0.5}, 1).way == Vector{-0.5, 0});
+  CHECK_FALSE(push_out({ahead, above}, {0, 0}, 1).needed());
+  // A touch is none.
+  CHECK_FALSE(push_out({ahead}, {0, 0}, 1 + contact_m / 2).needed());
+  CHECK(push_out({ahead}, {0, 0}, 1 + 2 * contact_m).needed());
 }
 
 }  // namespace sim_geometry_test

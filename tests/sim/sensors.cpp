@@ -181,6 +181,46 @@ TEST_CASE("each axis and each sensor of a part is as noisy as the model says, an
   });
 }
 
+TEST_CASE("each reading has the noise that was drawn for it on it, as large as the model says") {
+  GyroscopeModel gyroscope;
+  gyroscope.noise_deg_per_s = 10;
+  AccelerometerModel accelerometer;
+  accelerometer.noise_g = 0.1;
+  MagnetometerModel magnetometer;
+  magnetometer.hard_iron_gauss = {};
+  magnetometer.noise_gauss = 0.5;
+  for (std::uint64_t n = 0; n < 20; ++n) {
+    CAPTURE(n);
+    const Sample noisy = sample({}, n), quiet = sample({}, n, false);
+    const auto drawn = [&noisy](int channel) { return noisy.normal(static_cast<std::uint8_t>(channel)); };
+    const auto check = [&drawn](int channel, double added, double size, double rounding) {
+      CHECK(added == Approx(size * drawn(channel)).margin(rounding));
+    };
+    const auto turn = gyroscope.read(noisy), still = gyroscope.read(quiet);
+    check(0, (turn.x - still.x) * 0.0175, 10, 0.02);
+    check(1, (turn.y - still.y) * 0.0175, 10, 0.02);
+    check(2, (turn.z - still.z) * 0.0175, 10, 0.02);
+    const auto force = accelerometer.read(noisy), weight = accelerometer.read(quiet);
+    check(0, (force.x - weight.x) / 1024.0, 0.1, 0.002);
+    check(1, (force.y - weight.y) / 1024.0, 0.1, 0.002);
+    check(2, (force.z - weight.z) / 1024.0, 0.1, 0.002);
+    const auto field = magnetometer.read(Arena{}, noisy), north = magnetometer.read(Arena{}, quiet);
+    check(0, (field.x - north.x) * 1e-6, 0.5, 0.0026);
+    check(1, (field.y - north.y) * 1e-6, 0.5, 0.0026);
+    check(2, (field.z - north.z) * 1e-6, 0.5, 0.0026);
+    const auto ring = RingModel{}.read({}, noisy), dark = RingModel{}.read({}, quiet);
+    for (int i = 0; i < 8; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      check(i, 1.0 * ring[at] - dark[at], count_noise, 1.01);
+    }
+    const auto floor = FloorModel{}.read(Arena{}, noisy), bright = FloorModel{}.read(Arena{}, quiet);
+    for (int i = 0; i < 4; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      check(i, 1.0 * floor[at] - bright[at], count_noise, 1.01);
+    }
+  }
+}
+
 TEST_CASE("each axis has a bias and an offset of its own, of the model's size") {
   for (const auto part : {0, 1}) {
     std::array<double, 3> squares{};
@@ -277,6 +317,20 @@ TEST_CASE("infrared: each sensor looks where the board has it") {
         CHECK(above < 300);
     }
   }
+}
+
+TEST_CASE("infrared: a sensor sees along each of its rays, up to 70 degrees to either side, and no further") {
+  const RingModel ring;
+  for (std::size_t i = 0; i < 8; ++i)
+    for (int off_axis = -80; off_axis <= 80; off_axis += 10) {
+      CAPTURE(i, off_axis);
+      const Vector ray = direction(ring.angle(i) + off_axis * degree);
+      const Vector place = direction(ring.angle(i)) * ring.radius_m + ray * 0.03;
+      const Vector across = Vector{-ray.y, ray.x} * 0.001;  // no other ray of the sensor meets it
+      const std::vector<Segment> post{{place - across, place + across}};
+      const double seen = std::abs(off_axis) > 70 ? 0 : reflected_counts(0.03, off_axis * degree);
+      CHECK(ring.read(post, sample({}, 0, false))[i] == Approx(ring.offset_counts[i] + seen).margin(0.6));
+    }
 }
 
 TEST_CASE("infrared: a wall hides what is behind it, noise is the model's") {

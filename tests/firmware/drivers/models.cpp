@@ -317,6 +317,7 @@ TEST_CASE("HMC5883L: what it is, and how it begins") {
   CHECK(c.outputs()[0] == 100);
   c.model.set_present(false);
   c.model.set_present(true);
+  CHECK(c.read(0x1E, {}, 2) == Bytes{0x10, 0x20});  // from the first register on
   CHECK(c.read(0x1E, {0}, 2) == Bytes{0x10, 0x20});
   CHECK(c.outputs() == std::array{0, 0, 0});
   REQUIRE(c.write(0x1E, {2, 0x00}).ok());
@@ -472,6 +473,7 @@ TEST_CASE("VCNL4020: its registers as it begins, and again when it comes back") 
   CHECK(p.complaint().empty());
   p.model.set_present(false);
   p.model.set_present(true);
+  CHECK(p.read(0x13, {}, 18) == reset);  // from the first register on
   CHECK(p.read(0x13, {0x80}, 18) == reset);
 }
 

@@ -1,7 +1,9 @@
 #include "sim/messages/player.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -176,6 +178,59 @@ TEST_CASE("A message of several frames is broadcast, and is put together again")
   const auto counters = receiver.transport_counters(*last);
   CHECK(counters.lost() == 0);
   CHECK(counters.complete == parts.size());
+}
+
+TEST_CASE("A selector and what it selects may end with the message, and beyond it they make no page") {
+  const std::array<protocol::SelectorRange, 1> one{{{1, 1}}}, some{{{3, 5}}};
+  struct Found {
+    std::size_t pages;
+    bool chosen;
+    bool operator==(const Found&) const = default;
+  };
+  const auto found = [&](std::uint16_t selector, std::uint16_t first, std::uint16_t second,
+                         std::uint16_t length) {
+    std::array<protocol::Field, 3> fields{};
+    fields[0].position = {selector, 4};
+    fields[1].position = {first, 8};
+    fields[2].position = {second, 8};
+    fields[1].selector = fields[2].selector = 0;
+    fields[1].selected = one;
+    fields[2].selected = some;
+    protocol::FrameLayout layout;
+    layout.length = length;
+    layout.fields = fields;
+    const sim::Pages pages{layout};
+    return Found{pages.size(), pages.chosen(0)};
+  };
+  CHECK(found(0, 8, 16, 3) == Found{3, true});  // 1, 3, 5
+  CHECK(found(0, 8, 16, 2) == Found{1, true});  // 1
+  CHECK(found(0, 16, 8, 2) == Found{2, true});  // 3, 5
+  CHECK(found(0, 8, 16, 1) == Found{1, false});
+  CHECK(found(20, 0, 8, 3) == Found{3, true});
+  CHECK(found(20, 0, 8, 2) == Found{1, false});
+}
+
+TEST_CASE("Each page comes once in a round, the lowest value first, of a range its ends") {
+  const std::array<protocol::SelectorRange, 3> first{{{5, 5}, {3, 5}, {14, 14}}};
+  const std::array<protocol::SelectorRange, 2> second{{{0, 0}, {14, 20}}};  // no frame holds 20
+  std::array<protocol::Field, 3> fields{};
+  fields[0].position = {4, 4};
+  fields[1].position = fields[2].position = {8, 8};
+  fields[1].selector = fields[2].selector = 0;
+  fields[1].selected = first;
+  fields[2].selected = second;
+  protocol::FrameLayout layout;
+  layout.length = 2;
+  layout.fields = fields;
+  const sim::Pages pages{layout};
+  const std::vector<unsigned> values{0, 3, 5, 14, 15};
+  REQUIRE(pages.size() == values.size());
+  for (std::size_t number = 0; number < 2 * values.size(); ++number) {
+    std::array<std::uint8_t, 2> data{0x0A, 0xFF};
+    pages.put(number, data);
+    CHECK(data == std::array<std::uint8_t, 2>{
+                      static_cast<std::uint8_t>(values[number % values.size()] << 4 | 0x0A), 0xFF});
+  }
 }
 
 /// A message without a field, of a catalogue that a test makes.
