@@ -177,6 +177,7 @@ TEST_CASE("black box: of more frames than it has room for the oldest go, and are
   const World world{1};
   Boxed boxed;
   constexpr std::size_t most = operate::BlackBox::most_entries;
+  CHECK(most >= 10 * 1'000'000 / 47);  // the shortest frames at 1 Mbit/s, in 10 s
   for (std::size_t i = 0; i < most + 3; ++i)
     boxed.box.add(at(Duration{static_cast<std::int64_t>(i)}), World::start);
   CHECK(boxed.box.dropped() == 3);

@@ -8,6 +8,7 @@
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
 
+#include "ocm/measure/bus_load.hpp"
 #include "ocm/topics/amiro.hpp"
 
 #include "cli/operate/runner.hpp"
@@ -33,9 +34,12 @@ constexpr std::string_view file_text = R"({
   ]
 })";
 
-/// All that it prints in a second, while ten times as many bits come as the bus has room for. A file cannot
-/// have the limit 1000, which no load is above.
-std::string printed(std::int64_t per_mille) {
+/// A thousand of them come in a second.
+constexpr can::Frame frame{.id = 0x7F0, .dlc = 8};
+
+/// All that it prints in a second: on a bus of 10 kbit/s ten times as many bits come as that has room for. A
+/// file cannot have the limit 1000, which no load is above.
+std::string printed(std::int64_t per_mille, std::uint32_t bit_rate = 10'000) {
   auto loaded = operate::parse(file_text, "load.operator.json", amiro::catalogue, 500'000);
   for (const auto& problem : loaded.problems) UNSCOPED_INFO(problem.place << ": " << problem.what);
   REQUIRE(loaded.file);
@@ -44,13 +48,12 @@ std::string printed(std::int64_t per_mille) {
   World world{1};
   world.interrupt(World::start + 1s, SIGINT);
   PlayedBus::Conditions conditions;
-  for (int i = 0; i < 1000; ++i)
-    conditions.incoming.push_back({World::start + i * 1ms, can::Frame{.id = 0x7F0, .dlc = 8}});
+  for (int i = 0; i < 1000; ++i) conditions.incoming.push_back({World::start + i * 1ms, frame});
   PlayedBus bus{world, std::move(conditions), fmt::format("load-{}", ::getpid())};
   const auto control = operate::Control::open(bus.name());
   REQUIRE(control);
   world.inputs[(*control)->descriptor()] = [] { return Moment::max(); };
-  const operate::RunOptions options{false, 10'000, {}};
+  const operate::RunOptions options{false, bit_rate, {}};
   Captured out{STDOUT_FILENO}, err{STDERR_FILENO};
   {
     operate::Runner runner{bus, **control, amiro::catalogue, *loaded.file, options};
@@ -65,6 +68,16 @@ std::string printed(std::int64_t per_mille) {
 TEST_CASE("operate: a bus on which more comes than it has room for is full, and not more than that") {
   CHECK_THAT(printed(999), Catch::Contains("watching -> halted: "));
   CHECK_THAT(printed(1000), Catch::Contains("operator load is in watching") && !Catch::Contains(" -> "));
+}
+
+TEST_CASE("operate: the load of the bus is what comes in a window, of what it has room for then") {
+  // Of a hundred frames in a window one more or less may be counted, and at first a request is sent.
+  for (const unsigned percent : {10U, 50U, 80U}) {
+    CAPTURE(percent);
+    const auto bit_rate = measure::bits_on_bus(frame) * 1000 * 100 / percent;
+    CHECK_THAT(printed(percent * 10 - percent / 2, bit_rate), Catch::Contains("watching -> halted: "));
+    CHECK_THAT(printed(percent * 10 + percent / 2, bit_rate), !Catch::Contains(" -> "));
+  }
 }
 
 }  // namespace tool_clock_operate_load_test

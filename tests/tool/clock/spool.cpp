@@ -68,6 +68,15 @@ TEST_CASE(
   CHECK(std::filesystem::is_empty(spooled.folder));
 }
 
+TEST_CASE("spool: what begins at the same time is in the same file, and what begins before it is not") {
+  Spooled spooled;
+  for (const Duration after : {5s, 5s}) CHECK(spooled.append(after));
+  CHECK(spooled.holds(0) == "(1000000005.000000)(1000000005.000000)");
+  CHECK(spooled.holds(1) == "none");
+  CHECK(spooled.append(5s - 1us));
+  CHECK(spooled.holds(1) == "(1000000004.999999)");
+}
+
 TEST_CASE("spool: what the disk does not take is said, and what comes next is in another file") {
   bool full = false;  // the spool writes as long as it is there
   Spooled spooled;

@@ -263,6 +263,48 @@ TEST_CASE("operate: a distance is the same where raw numbers fall while values r
   }
 }
 
+TEST_CASE("operate: of the topics that a monitor looks at the one is named that is not asked for") {
+  const auto loaded = operate::parse(
+      R"({"name": "blind", "initial": "all", "fall_back": "halted", "settle": "60ms", "reaction": "20ms", "handling": "1ms",
+          "configurations": [{"name": "all", "streams": [{"topic": "ring"}]}, {"name": "halted"}],
+          "monitors": [{"name": "empty", "when": "power.state_of_charge<20%"},
+                       {"name": "near", "when": {"all": [{"any": ["ring.sensor_1>5", "ring.sensor_2>5"]},
+                                                         {"bus_state": "off"}, "odometry.velocity.x>0.1m/s"]}}],
+          "transitions": [{"from": "all", "to": "halted", "when": "near"}]})",
+      "blind", amiro::catalogue, 500'000);
+  REQUIRE(loaded.problems.size() == 1);
+  CHECK(loaded.problems[0].what == R"(its monitor looks at "odometry", which "all" does not ask for)");
+}
+
+TEST_CASE("operate: of a set point that is outside the spec the field is named that is") {
+  const auto oven = spec::parse(
+      R"({"robot": "Oven", "namespace": "oven", "bus": {"bit_rate": 500000, "source": "decided"},
+          "boards": [{"name": "main_board", "mcu": "STM32F103", "source": "decided"}],
+          "topics": [{"name": "heater", "kind": "actuator", "id": "0x01", "board": "main_board", "source": "decided",
+            "frames": [{"fields": [
+              {"name": "fan", "byte": 0, "type": "u8", "range": [0, 10]},
+              {"name": "watts", "byte": 1, "type": "u8", "range": [5, 20]},
+              {"name": "minutes", "byte": 2, "type": "u8", "range": [1, 30]}]}]}]})",
+      "oven.json");
+  for (const auto& problem : oven.problems) UNSCOPED_INFO(problem.place << ": " << problem.what);
+  REQUIRE(oven.spec);
+  const auto remedy = [&](const std::string& values) {
+    const auto loaded = operate::parse(
+        R"({"name": "warm", "initial": "all", "fall_back": "all", "settle": "60ms", "reaction": "20ms", "handling": "1ms",
+            "configurations": [{"name": "all", "entry": [{"topic": "heater", "values": {)" +
+            values + "}}]}]}",
+        "warm", oven.spec->catalogue(), 500'000);
+    REQUIRE(loaded.problems.size() == 1);
+    CHECK(loaded.problems[0].place.ends_with("/configurations/0/entry/0"));
+    return loaded.problems[0].remedy;
+  };
+  // What is not stated is 0.
+  CHECK(remedy("") == "watts takes 5 to 20");
+  CHECK(remedy(R"("fan": "10")") == "watts takes 5 to 20");
+  CHECK(remedy(R"("watts": "5")") == "minutes takes 1 to 30");
+  CHECK(remedy(R"("fan": "10", "watts": "20")") == "minutes takes 1 to 30");
+}
+
 TEST_CASE("operate: a load of the bus is rounded to per mille, with and without its sign") {
   struct Typed {
     const char* typed;

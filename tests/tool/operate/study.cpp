@@ -92,4 +92,33 @@ TEST_CASE("operate: a file of one configuration, and of messages that come by th
                                                     operate::to_dot(of_car));
 }
 
+TEST_CASE("operate: what a board alone cannot serve in time is one reason, and the bus is none besides") {
+  // A sample of the ring takes its board 26.572 ms.
+  const auto doubts = [](const std::string& period) {
+    const auto loaded = operate::parse(
+        R"({"name": "late", "initial": "all", "fall_back": "all", "settle": "200ms", "reaction": "4ms", "handling": "2ms",
+            "configurations": [{"name": "all", "streams": [{"topic": "ring", "priority": "high", "period": ")" +
+            period + R"("}]}]})",
+        "late", amiro::catalogue, 1'000'000);
+    INFO(of(loaded.problems));
+    REQUIRE(loaded.file);
+    return operate::study(*loaded.file, 1'000'000).doubts;
+  };
+  const auto too_long = doubts("26ms");
+  INFO(of(too_long));
+  REQUIRE(too_long.size() == 1);
+  CHECK(too_long[0].what ==
+        "in \"all\" the processor of power_management takes up to 26.572 ms for a sample of proximity_ring, "
+        "its "
+        "deadline is 26 ms");
+  // Just in time on its board, and on the bus no more.
+  const auto on_the_bus = doubts("26572us");
+  INFO(of(on_the_bus));
+  REQUIRE(on_the_bus.size() == 1);
+  CHECK_THAT(on_the_bus[0].what, Catch::StartsWith("in \"all\" proximity_ring takes up to ") &&
+                                     Catch::EndsWith(" ms (26.572 ms of it on its board), its deadline is "
+                                                     "26.572 ms"));
+  CHECK(doubts("40ms").empty());
+}
+
 }  // namespace operate_study_test

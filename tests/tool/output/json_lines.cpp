@@ -1,5 +1,6 @@
 #include "cli/logs/json_lines.hpp"
 
+#include <array>
 #include <random>
 #include <string>
 #include <vector>
@@ -291,6 +292,56 @@ TEST_CASE("JSON lines: a CAN FD frame of fields alone is zero elsewhere, whateve
   for (std::size_t i = 1; i < 64; ++i) CHECK(entry.data[i] == 0);
 }
 
+TEST_CASE("JSON lines: of fields that have bits in common those count that were edited", "[output]") {
+  std::array<protocol::Field, 4> fields;
+  const auto put = [&fields](std::size_t i, std::string_view name, std::uint16_t start, std::uint8_t width) {
+    fields[i].name = name;
+    fields[i].position = {start, width, protocol::ByteOrder::little};
+    fields[i].raw_max = (1 << width) - 1;
+  };
+  put(0, "number", 0, 8);
+  put(1, "whole", 8, 16);
+  put(2, "low", 8, 8);
+  put(3, "high", 16, 8);
+  protocol::FrameLayout layout;
+  layout.length = 3;
+  layout.fields = fields;
+  layout.address = {protocol::Address::By::identifier, false, 0x123};
+  protocol::Topic topic;
+  topic.name = "M";
+  topic.kind = protocol::Kind::message;
+  topic.frames = {&layout, 1};
+  protocol::Catalogue catalogue;
+  catalogue.topics = {&topic, 1};
+  const auto frame = [&catalogue](std::string_view given, std::string_view data = "") {
+    JsonLineParser parser{catalogue};
+    log::Entry entry;
+    std::string_view bus;
+    const std::string line = fmt::format(R"({{"topic":"M","fields":{{{}}}{}}})", given,
+                                         data.empty() ? "" : fmt::format(R"(,"data":"{}")", data));
+    if (!parser.parse(line, entry, bus)) return parser.problem().what + "; " + parser.problem().remedy;
+    return std::string{can::to_text(entry.classic().value()).view()};
+  };
+  const auto both = [](std::string_view one, std::string_view other) {
+    return fmt::format(
+        R"(fields "{}" and "{}" have bits in common, and cannot be what both are given; leave one of them out)",
+        one, other);
+  };
+  CHECK(frame(R"("whole":4660)") == "123#003412");
+  CHECK(frame(R"("number":9,"low":5,"high":6)") == "123#090506");
+  CHECK(frame(R"("low":52,"whole":4660,"high":18)") == "123#003412");
+  CHECK(frame(R"("number":9,"whole":4660,"low":5)") == both("whole", "low"));
+  CHECK(frame(R"("low":5,"number":9,"whole":4660)") == both("low", "whole"));
+  CHECK(frame(R"("high":5,"whole":4660)") == both("high", "whole"));
+  // Of a line with data what that says is what was not edited.
+  CHECK(frame(R"("number":0,"whole":513,"low":1,"high":2)", "000102") == "123#000102");
+  CHECK(frame(R"("number":0,"whole":513,"low":7,"high":2)", "000102") == "123#000702");
+  CHECK(frame(R"("number":0,"whole":772,"low":1,"high":2)", "000102") == "123#000403");
+  CHECK(frame(R"("number":0,"whole":772,"low":4,"high":2)", "000102") == "123#000403");
+  CHECK(frame(R"("number":0,"whole":5.13e2,"low":7,"high":8)", "000102") == "123#000708");
+  CHECK(frame(R"("number":0,"whole":772,"low":7,"high":2)", "000102") == both("whole", "low"));
+}
+
 TEST_CASE("JSON lines: what contradicts itself or is none is refused in words", "[output]") {
   const auto wrong = [](std::string_view line, std::string_view part) {
     const std::string answer = frame_of(line);
@@ -371,6 +422,27 @@ TEST_CASE("JSON lines: what is given twice is refused, same or not", "[output]")
   const auto log = log::testing::read_all<JsonLinesReader>(fmt::format("{}\n{}\n", gyroscope, gyroscope),
                                                            amiro::catalogue);
   CHECK(log.entries.size() == 2);
+}
+
+TEST_CASE("JSON lines: a line has as many fields as a frame has bits, and no more", "[output]") {
+  const auto line = [](std::size_t fields) {
+    std::string text;
+    for (std::size_t i = 0; i < fields; ++i) text += (i == 0 ? "\"f" : ",\"f") + std::to_string(i) + "\":0";
+    return R"({"id":"4FF","data":"","fields":{)" + text + "}}";
+  };
+  CHECK(has(frame_of(line(512)), "fields, but id 4FF is of no topic"));
+  CHECK(frame_of(line(513)) == "more than 512 fields; a frame has at most 512 bits");
+  CHECK(frame_of(line(0)) == "4FF#");
+}
+
+TEST_CASE("JSON lines: a line that is too long is one place, and the next one is read", "[output]") {
+  const std::string text = R"({"id":"123","note":")" + std::string(2 * log::Input::longest, 'x') + "\"}\n" +
+                           R"({"id":"123","data":"11"})" + "\n";
+  const auto log = log::testing::read_all<JsonLinesReader>(text, amiro::catalogue);
+  CHECK(log.entries.size() == 1);
+  CHECK(log.complained == 1);
+  REQUIRE(log.complaints.size() == 1);
+  CHECK(log.complaints[0].cause == log::Cause::too_long);
 }
 
 TEST_CASE("JSON lines: a log that is cut or damaged anywhere gives entries that can exist", "[output]") {

@@ -43,6 +43,11 @@ TEST_CASE("JSON strings: half a pair is none, and a byte of old logs is that byt
   CHECK(text_of(R"(\ud800)") == "(none)");
   CHECK(text_of(R"(\ud800\u0041)") == "(none)");
   CHECK(text_of(R"(\ud800\ue000)") == "(none)");
+  CHECK(text_of(R"(\ud800\udbff)") == "(none)");
+  // What comes first has no second half.
+  CHECK(text_of(R"(\ud7ff\udc00)") == "(none)");
+  CHECK(text_of(R"(\udc00\udc00)") == "(none)");
+  CHECK(text_of(R"(\udc80\udcff)") == "\x80\xFF");
   CHECK(text_of(R"(\udbff)") == "(none)");
   CHECK(text_of(R"(\udc00)") == "(none)");
   CHECK(text_of(R"(\udc7f)") == "(none)");

@@ -1,0 +1,294 @@
+// What is written to a file as a log, and what becomes of it where the file takes no more.
+#include "cli/logs/log_file.hpp"
+
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <fcntl.h>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <sstream>
+#include <string>
+#include <string_view>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <utility>
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+#include "ocm/topics/amiro.hpp"
+
+namespace tool_output_log_file_test {
+
+using namespace ocm;
+using cli::logs::Existing;
+using cli::logs::LogFile;
+namespace fs = std::filesystem;
+
+constexpr const char* nothing_kept = "nothing of it was kept";
+constexpr const char* can_be_read = "what was written before can be read";
+/// What `write` makes.
+constexpr std::string_view one_line = "(1000000000.000000) can0 123#00\n";
+
+/// A folder that goes with it.
+class Folder {
+ public:
+  Folder() { REQUIRE(::mkdtemp(path_.data()) != nullptr); }
+  ~Folder() { fs::remove_all(path_); }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+  [[nodiscard]] std::string file(const std::string& name) const { return path_ + "/" + name; }
+
+ private:
+  std::string path_ = (fs::temp_directory_path() / "log-file-XXXXXX").string();
+};
+
+/// How large files may become while it lives; a write beyond that fails.
+class Limited {
+ public:
+  explicit Limited(std::size_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
+    ::getrlimit(RLIMIT_FSIZE, &before_);
+    rlimit limit = before_;
+    limit.rlim_cur = bytes;
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~Limited() {
+    ::setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, handler_);
+  }
+  Limited(const Limited&) = delete;
+  Limited& operator=(const Limited&) = delete;
+
+ private:
+  void (*handler_)(int);
+  rlimit before_{};
+};
+
+std::unique_ptr<LogFile> created(const std::string& path, Existing existing = Existing::refuse) {
+  auto made = LogFile::create(path, *cli::logs::find_format("candump"), amiro::catalogue, existing);
+  INFO(made.error.what);
+  REQUIRE(made);
+  return std::move(*made);
+}
+
+bool write(LogFile& file) {
+  log::Interfaces interfaces;
+  interfaces.number("can0");
+  const std::array entries{
+      log::Entry{base::Time{std::chrono::seconds{1'000'000'000}}, can::Frame{0x123, 1, {}}}};
+  return file.write(entries, interfaces);
+}
+
+std::string content(const std::string& path) {
+  std::ostringstream text;
+  text << std::ifstream{path, std::ios::binary}.rdbuf();
+  return text.str();
+}
+
+/// Which descriptor the next file gets.
+int next_descriptor() {
+  const int free = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
+  ::close(free);
+  return free;
+}
+
+TEST_CASE("log file: what was there goes where the new log may be as large, and stays where it may not") {
+  const Folder folder;
+  const std::string path = folder.file("a.log");
+  const auto overwrite = [&](std::size_t most) {
+    std::ofstream{path} << "old";
+    const auto file = created(path, Existing::overwrite);
+    const Limited limited{most};
+    return write(*file) && file->finish();
+  };
+  CHECK(overwrite(one_line.size()));
+  CHECK(content(path) == one_line);
+  CHECK(overwrite(one_line.size() + 1));
+  CHECK(content(path) == one_line);
+  CHECK_FALSE(overwrite(one_line.size() - 1));
+  CHECK(content(path) == "old");
+}
+
+TEST_CASE("log file: of a file that takes no more it is said whether anything is in it") {
+  const Folder folder;
+  {
+    const auto file = created("/dev/full");
+    CHECK(write(*file));
+    CHECK_FALSE(file->flush());
+    CHECK(file->failure().what == "cannot write /dev/full: No space left on device");
+    CHECK(file->failure().remedy == std::string{"free some space; "} + nothing_kept);
+    CHECK_FALSE(file->finish());
+  }
+  {
+    const std::string path = folder.file("nothing.log");
+    const auto file = created(path);
+    bool taken = false, finished = false;
+    {
+      const Limited limited{0};
+      taken = write(*file);
+      finished = file->finish();
+    }
+    CHECK(taken);
+    CHECK_FALSE(finished);
+    CHECK(file->failure().what == "cannot write " + path + ": File too large");
+    CHECK(file->failure().remedy == nothing_kept);
+    CHECK_FALSE(fs::exists(path));  // the next try finds the name free
+  }
+  for (const std::size_t room : {one_line.size(), 2 * one_line.size() - 1}) {
+    const std::string path = folder.file("some" + std::to_string(room) + ".log");
+    const auto file = created(path);
+    bool first = false, second = false;
+    {
+      const Limited limited{room};
+      first = write(*file) && file->flush();
+      second = write(*file) && file->flush();
+    }
+    CHECK(first);
+    CHECK_FALSE(second);
+    CHECK(file->size() == one_line.size());
+    CHECK(file->failure().remedy == can_be_read);
+    CHECK_FALSE(file->finish());
+    CHECK(content(path) == one_line);  // a whole record
+  }
+}
+
+TEST_CASE("log file: one that is finished is left alone, also what has its descriptor now") {
+  const Folder folder;
+  const std::string first = folder.file("first.log"), second = folder.file("second.log");
+  auto file = created(first);
+  CHECK(file->finish());
+  CHECK(file->finish());  // it is
+  const auto other = created(second);
+  file.reset();
+  CHECK(write(*other));
+  CHECK(other->finish());
+  CHECK(content(second) == one_line);
+  CHECK(fs::exists(first));
+  CHECK(content(first).empty());
+}
+
+TEST_CASE("log file: it is written to as a file that blocks, a pipe too") {
+  const Folder folder;
+  // Far from the numbers that fcntl has for what it does.
+  const int low = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
+  const int high = ::fcntl(low, F_DUPFD_CLOEXEC, 100);
+  REQUIRE(high >= 100);
+  std::vector<int> filled;
+  while (next_descriptor() < high) filled.push_back(::open("/dev/null", O_RDONLY | O_CLOEXEC));
+  const std::string pipe = folder.file("pipe"), plain = folder.file("plain.log");
+  REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
+  const int reader = ::open(pipe.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+  std::ofstream{plain} << "old";
+  for (const auto& path : {pipe, plain}) {
+    const int descriptor = next_descriptor();
+    const auto file = created(path, Existing::overwrite);
+    CHECK((::fcntl(descriptor, F_GETFL) & (O_ACCMODE | O_NONBLOCK | O_APPEND | O_ASYNC)) == O_WRONLY);
+    CHECK(write(*file));
+    CHECK(file->finish());
+  }
+  std::array<char, 100> text{};
+  CHECK(::read(reader, text.data(), text.size()) == static_cast<ssize_t>(one_line.size()));
+  CHECK(content(plain) == one_line);
+  for (const int each : {low, high, reader}) ::close(each);
+  for (const int each : filled) ::close(each);
+}
+
+TEST_CASE("log file: a file that another one writes is refused, and no other, whatever failed before") {
+  const Folder folder;
+  const std::string path = folder.file("a.log");
+  {
+    errno = EWOULDBLOCK;
+    const auto file = created(path);
+    CHECK(cli::logs::is_being_written(path));
+    for (const auto existing : {Existing::refuse, Existing::overwrite, Existing::claimed}) {
+      const auto again =
+          LogFile::create(path, *cli::logs::find_format("candump"), amiro::catalogue, existing);
+      REQUIRE_FALSE(again);
+      CHECK(again.error.what == "another program writes " + path + " now");
+      CHECK(again.error.remedy == "end it, or give another name");
+    }
+    CHECK(write(*file));
+    CHECK(file->finish());
+  }
+  errno = EWOULDBLOCK;
+  CHECK_FALSE(cli::logs::is_being_written(path));
+  const auto there =
+      LogFile::create(path, *cli::logs::find_format("candump"), amiro::catalogue, Existing::refuse);
+  REQUIRE_FALSE(there);
+  CHECK(there.error.what == path + " is there already");
+  CHECK_FALSE(cli::logs::is_being_written(path));  // who was refused does not keep it
+  CHECK(content(path) == one_line);
+}
+
+TEST_CASE("log file: it is where its name is, or elsewhere, deleted or emptied") {
+  using cli::logs::Place;
+  const Folder folder;
+  const std::string path = folder.file("a.log"), other = folder.file("b.log");
+  const auto file = created(path);
+  CHECK(file->place() == Place::as_named);
+  CHECK(write(*file));
+  CHECK(file->flush());
+  CHECK(file->place() == Place::as_named);
+  fs::rename(path, other);
+  CHECK(file->place() == Place::elsewhere);
+  std::ofstream{path} << "another file";
+  CHECK(file->place() == Place::elsewhere);
+  fs::rename(other, path);
+  CHECK(file->place() == Place::as_named);
+  fs::resize_file(path, one_line.size() - 1);
+  CHECK(file->place() == Place::emptied);
+  fs::remove(path);
+  CHECK(file->place() == Place::deleted);
+  CHECK(file->finish());
+  CHECK(created("/dev/null")->place() == Place::as_named);
+}
+
+TEST_CASE("log file: one that took nothing is deleted, and no other that has its name now") {
+  const Folder folder;
+  const std::string path = folder.file("a.log"), other = folder.file("b.log");
+  {
+    const auto file = created(path);
+    CHECK(file->discard());
+    CHECK_FALSE(fs::exists(path));
+  }
+  {
+    const auto file = created(path);
+    fs::rename(path, other);
+    std::ofstream{path} << "another file";
+    CHECK(file->discard());
+  }
+  CHECK(content(path) == "another file");
+  CHECK(content(other).empty());
+  CHECK(created(path, Existing::overwrite)->discard());  // as it was before
+  CHECK(content(path) == "another file");
+  {
+    const auto file = created(other, Existing::claimed);
+    CHECK(file->discard());
+    CHECK_FALSE(fs::exists(other));
+  }
+}
+
+TEST_CASE("log file: whether the disk has room is asked, and none is taken") {
+  const Folder folder;
+  const std::string path = folder.file("a.log");
+  const auto file = created(path);
+  CHECK(write(*file));
+  CHECK(file->flush());
+  const auto blocks = [&path] {
+    struct stat status {};
+    REQUIRE(::stat(path.c_str(), &status) == 0);
+    return status.st_blocks;
+  };
+  const auto before = blocks();
+  CHECK(file->has_room());
+  CHECK(blocks() - before < 256);  // of 512 bytes, and it was asked for 256 KiB
+  CHECK(file->finish());
+  CHECK(content(path) == one_line);
+}
+
+}  // namespace tool_output_log_file_test
