@@ -203,6 +203,7 @@ class Convert(Case):
         log = self.file("in.log", LOG * 10_000)
         _, err = self.run_tool("convert", log, "/dev/full", "--to", "candump", code=1)
         self.assertIn("No space left", err)
+        self.assertIn(" read, candump to candump: nothing of it was written\n", err)
         _, err = self.run_tool("convert", log, self.path("no/such/folder.log"), code=1)
         self.assertIn("folder", err)
 

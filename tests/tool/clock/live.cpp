@@ -69,6 +69,19 @@ TEST_CASE("live: what is beside does not wait behind a bus that always has a fra
   }
 }
 
+TEST_CASE("live: on a silent bus it looks for a signal five times a second, and no more often") {
+  World world{1};
+  PlayedBus bus{world, {}};
+  std::size_t steps = 0;  // of the time, three a look
+  world.beside = [&] { ++steps; };
+  cli::Live live{bus};
+  CHECK(live.receive(World::start + 10s, [](const can::Received&) { return true; }) == cli::Over::time);
+  CHECK(world.now() >= World::start + 10s);
+  CHECK(world.now() < World::start + 10s + 1ms);
+  CHECK(steps >= 100);
+  CHECK(steps <= 300);
+}
+
 TEST_CASE("live: a bus that always has a frame is left behind a second of work, stopped or not") {
   for (const Duration stopped : {0s, 30s}) {
     World world{1};

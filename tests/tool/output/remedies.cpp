@@ -77,6 +77,15 @@ TEST_CASE("remedies: of each reason for which a board refuses") {
   for (const char* const reason : {"no_sample", "no_answer", "bus_fault", ""})
     CHECK(of(reason) ==
           "`amiroctl doctor` says which parts do not answer; when they do, it accepts the same again");
+  // What goes by the ring needs to know what each of its sensors says of nothing.
+  for (const char* const name : {"avoid", "home", "travel"}) {
+    const auto* const topic = amiro::catalogue.find(name);
+    REQUIRE(topic != nullptr);
+    const bool by_ring = topic->name != "travel";
+    CHECK((remedy(client::Refused{topic, "power_management", "no_sample"}) == cli::ring_without_offsets) ==
+          by_ring);
+    CHECK(remedy(client::Refused{topic, "power_management", "no_answer"}) != cli::ring_without_offsets);
+  }
 }
 
 TEST_CASE("remedies: each counter is a finding of its own, and zero is none") {

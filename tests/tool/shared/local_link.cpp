@@ -3,9 +3,11 @@
 #include "cli/shared/local_link.hpp"
 
 #include <chrono>
+#include <fcntl.h>
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <sys/file.h>
 #include <sys/socket.h>
 #include <unistd.h>
 #include <utility>
@@ -97,6 +99,16 @@ TEST_CASE("local link: a greeting, and each kind of answer") {
   CHECK_FALSE(link->over());
   CHECK(server.end() ==
         std::vector<std::string>{"hello 1 goto", "one", "two", "three", "four", "five", "six"});
+}
+
+TEST_CASE("local link: an answer of one byte is one") {
+  const Folder folder;
+  PlayedServer server{folder.file("a.sock"), {"ok\nguard", "?"}};
+  auto link = connected(folder.file("a.sock"));
+  const auto answer = link->ask("status", 30s);
+  CHECK(answer.kind == LocalAnswer::Kind::no);
+  CHECK(answer.failure.what.empty());
+  CHECK_FALSE(link->over());
 }
 
 TEST_CASE("local link: the longest answer comes whole") {
@@ -298,6 +310,25 @@ TEST_CASE("local server: a path that is taken, and one that was removed") {
   CHECK(bench.answer(*after) == "ok\nbench");
   client->say("status");
   CHECK(bench.answer(*client) == "ok\n");
+}
+
+TEST_CASE("local server: another one that starts is waited for, and not by one that has begun") {
+  Bench bench;
+  const host::Descriptor other{::open(bench.folder.file("").c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)};
+  REQUIRE(::flock(other.get(), LOCK_EX) == 0);
+  std::filesystem::remove(bench.folder.file("b.sock"));
+  const auto back = bench.server->return_to_path();
+  REQUIRE_FALSE(back);
+  CHECK_THAT(back.error.what, Catch::Contains("holds the lock of the directory"));
+  CHECK_FALSE(bench.server->is_found());
+  const auto begin = std::chrono::steady_clock::now();
+  const auto second = LocalServer::open(bench.folder.file("c.sock"), service);  // waits a second
+  REQUIRE_FALSE(second);
+  CHECK_THAT(second.error.what, Catch::Contains("holds the lock of the directory"));
+  CHECK(std::chrono::steady_clock::now() - begin >= 1s);
+  REQUIRE(::flock(other.get(), LOCK_UN) == 0);
+  REQUIRE(bench.server->return_to_path());
+  CHECK(bench.server->is_found());
 }
 
 }  // namespace tool_shared_local_link_test

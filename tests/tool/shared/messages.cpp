@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <fcntl.h>
 #include <string>
 #include <unistd.h>
@@ -130,6 +131,70 @@ TEST_CASE("messages: held ones are counted, and written when they are held no mo
   }
   CHECK(pipe.read() == "one\ntwo\n");
   CHECK(HeldMessages::count() == 0);
+}
+
+TEST_CASE("messages: of several parts that wait for no reader the last one ends that") {
+  const Pipe pipe;
+  {
+    const UnhurriedMessages outer;
+    pipe.fill();
+    {
+      const UnhurriedMessages inner;
+      remark("for later");
+    }
+    CHECK(pipe.read().empty());
+    UnhurriedMessages::write();
+    CHECK(pipe.read() == "for later\n");
+    pipe.fill();
+    remark("for later, too");
+    CHECK(pipe.read().empty());
+  }
+  CHECK(pipe.read() == "for later, too\n");
+}
+
+TEST_CASE("messages: held ones stay held behind a part that waits for no reader") {
+  const Pipe pipe;
+  {
+    const HeldMessages held;
+    {
+      const UnhurriedMessages unhurried;
+      remark("one");
+      UnhurriedMessages::write();
+    }
+    CHECK(pipe.read().empty());
+    CHECK(HeldMessages::count() == 1);
+    remark("two");
+    CHECK(HeldMessages::newest() == "two");
+  }
+  CHECK(pipe.read() == "one\ntwo\n");
+}
+
+TEST_CASE("messages: what is written now is as much as is taken, and why no more") {
+  const Pipe pipe;
+  const std::string line(1000, 'x'), much(1 << 20, 'x');
+  Written written = write_now(STDERR_FILENO, line);
+  CHECK(written.bytes == line.size());
+  CHECK(written.error == 0);
+  CHECK(pipe.read() == line);
+  written = write_now(STDERR_FILENO, much);
+  CHECK(written.bytes >= 4096);
+  CHECK(written.bytes < much.size());
+  CHECK(written.error == 0);
+  CHECK(pipe.read().size() == written.bytes);
+  pipe.fill();
+  written = write_now(STDERR_FILENO, line);
+  CHECK(written.bytes == 0);
+  CHECK(written.error == 0);
+  std::array<int, 2> ends{};
+  REQUIRE(::pipe2(ends.data(), O_CLOEXEC) == 0);
+  ::close(ends[0]);
+  {
+    const WithoutBrokenPipe without;
+    written = write_now(ends[1], line);
+  }
+  CHECK(written.bytes == 0);
+  CHECK(written.error == EPIPE);
+  ::close(ends[1]);
 }
 
 }  // namespace messages_test

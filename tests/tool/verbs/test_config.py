@@ -282,6 +282,10 @@ class Config(harness.Case):
         self.environment["AMIROCTL_DRY_RUN"] = "maybe"
         self.assertIn("AMIROCTL_DRY_RUN=maybe: ", self.run_tool("publish", "mag", "900us", code=2)[1])
 
+    def test_a_variable_has_each_letter_of_its_option(self):
+        self.environment["AMIROCTL_SIZE"] = "200"
+        self.assertIn("amiroctl: AMIROCTL_SIZE=200: invalid value\n", self.run_tool("plot", "gyro.x", code=2)[1])
+
     def test_an_empty_variable_sets_nothing(self):
         self.environment["AMIROCTL_PRIORITY"] = self.environment["AMIROCTL_DRY_RUN"] = ""
         self.assertEqual(self.frame(), "205#01840302")
@@ -340,6 +344,28 @@ class Config(harness.Case):
             self.assertIn(":2: tables within tables, more than 1000 deep", self.run_tool("list", code=2)[1])
         self.write("#" * 200_000)
         self.assertIn("larger than", self.run_tool("list", code=2)[1])
+
+    def test_a_file_has_so_many_bytes_and_no_more(self):
+        self.write("#" * 100_000)
+        self.run_tool("list")
+        self.write("#" * 100_001)
+        self.assertIn(f"amiroctl: {self.file}: larger than 100000 bytes\n", self.run_tool("list", code=2)[1])
+
+    def test_the_folder_of_the_file(self):
+        of_home = os.path.join(self.folder, ".config", "amiroctl", "config.toml")
+        os.makedirs(os.path.dirname(of_home))
+        with open(of_home, "w", encoding="utf-8") as file:
+            file.write('priority = "high"\n')
+        self.write('priority = "low"\n')
+        self.assertEqual(self.frame(), "305#01840302")
+        self.environment["XDG_CONFIG_HOME"] = ""
+        self.assertEqual(self.frame(), "105#01840302")
+        del self.environment["XDG_CONFIG_HOME"]
+        self.assertEqual(self.frame(), "105#01840302")
+        self.environment["HOME"] = ""
+        self.assertEqual(self.frame(), "205#01840302")
+        del self.environment["HOME"]
+        self.assertEqual(self.frame(), "205#01840302")
 
     def test_so_many_points_in_a_line_and_no_more(self):
         """Points of texts are none, nor those of the lines before."""

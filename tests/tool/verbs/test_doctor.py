@@ -47,6 +47,16 @@ class Doctor(Case):
         self.assertIsNone(report["battery_percent"])
         self.assertEqual(report["batteries"], [])
 
+    def test_a_board_that_does_not_answer_is_asked_twice(self):
+        self.start_sim("--without", "di_wheel_drive,power_management,light_ring")
+        listener = self.listen("--commands", "--timeout", "60s")
+        self.run_tool("doctor", "--listen", "1ms", "--patience", "1ms", code=1)
+        self.run_tool("send", "123#")  # behind all that was asked
+        asked = []
+        while not asked or asked[-1] != "123":
+            asked.append(json.loads(listener.stdout.readline())["id"])
+        self.assertEqual(asked, ["31B", "339", "357"] * 2 + ["123"])
+
     def test_no_board_answers(self):
         self.start_sim("--without", "di_wheel_drive,power_management,light_ring")
         report = self.examine(code=1)

@@ -221,7 +221,11 @@ class Plot(Case):
         spec = os.path.join(self.folder, "edges.dbc")
         with open(spec, "w", encoding="ascii") as file:
             file.write('BU_: N\nBO_ 256 azAZ09: 8 N\n SG_ zZaA9_0 : 0|8@1+ (1,0) [0|0] "" N\n')
+        other = os.path.join(self.folder, "other.dbc")  # names as no C program has them
+        with open(other, "w", encoding="ascii") as file:
+            file.write('BU_: N\nBO_ 256 Pump: 8 N\n SG_ Oil-T% : 0|8@1+ (1,0) [0|0] "" N\n')
         for words, shows in ((("gyro.z", "ring.sensor_1"), "/gyroscope.z,/proximity_ring.sensor_1.proximity"),
+                             (("--spec", other, "Pump.*"), "/Pump.Oil%2DT%25"),
                              (("odom.velocity.x",), "/odometry.velocity.x"), (("--spec", spec, "azAZ09.*"), "/azAZ09.zZaA9_0")):
             out, _ = self.run_tool("plot", "--live", *words, "--port", "0", "--duration", "100ms")
             self.assertRegex(out, rf"^http://127\.0\.0\.1:[0-9]+/#plot={re.escape(shows)}\n$")

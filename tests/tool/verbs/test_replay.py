@@ -258,6 +258,7 @@ class Replaying(Case):
         self.assertAlmostEqual(statistics.median(gaps), 0.1, delta=0.05)
         self.assertEqual([frame for _, frame in out[len(gyro):]], ["602#0000000000000000", "603#00000000000000FF"])
         self.assertIn("the log has no sample of it", err)
+        self.assertIn(f" requests, {len(out)} frames sent, ", err)
         self.assertIn("1 requests refused", err)
         self.assertIn("1 requests for what was not recorded", err)
         self.interrupt(sim)

@@ -1,0 +1,45 @@
+/// A terminal of its own for code under test; a test has the keys.
+#pragma once
+
+#include <cstdlib>
+#include <fcntl.h>
+#include <poll.h>
+#include <string_view>
+#include <sys/types.h>
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+
+#include "ocm/host/descriptor.hpp"
+
+namespace ocm::test {
+
+class PseudoTerminal {
+ public:
+  PseudoTerminal() : keys_(::posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC)) {
+    REQUIRE(keys_);
+    REQUIRE(::grantpt(keys_.get()) == 0);
+    REQUIRE(::unlockpt(keys_.get()) == 0);
+    const char* const name = ::ptsname(keys_.get());
+    REQUIRE(name != nullptr);
+    terminal_ = host::Descriptor{::open(name, O_RDWR | O_NOCTTY | O_CLOEXEC)};
+    REQUIRE(terminal_);
+  }
+
+  /// What a program would have as its standard streams.
+  [[nodiscard]] int descriptor() const noexcept { return terminal_.get(); }
+  /// Returns when they can be read, where they are read one by one.
+  void press(std::string_view keys) const {
+    REQUIRE(::write(keys_.get(), keys.data(), keys.size()) == static_cast<ssize_t>(keys.size()));
+    pollfd input{terminal_.get(), POLLIN, 0};
+    REQUIRE(::poll(&input, 1, 30'000) == 1);
+  }
+  /// As a window that is closed.
+  void close() noexcept { keys_.reset(); }
+
+ private:
+  host::Descriptor keys_;
+  host::Descriptor terminal_;
+};
+
+}  // namespace ocm::test
