@@ -1,5 +1,6 @@
 #include "cli/operate/mistakes.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -70,27 +71,34 @@ class Judge {
         return "in " + named(f.configuration) + " it can fire at once with the transition of " +
                line_of(f.other) + ", which leads to " + named(file_.transitions[f.other].to);
       case Mistake::not_watched:
-        return "its monitor looks at " + unseen(f) + ", which " +
-               (f.configuration == none ? std::string{"no configuration asks for"}
-                                        : named(f.configuration) + " does not ask for");
+        return not_watched(f);
       default:
         return std::string{reflective::describe(f.kind)};
     }
   }
-  /// A topic of the transition's monitor that its configuration does not stream.
-  [[nodiscard]] std::string unseen(const reflective::Finding& f) const {
+  /// Names a topic of the transition's monitor that its configuration does not stream, or, of a transition
+  /// from any, none does; where each has one that does, none has them all.
+  [[nodiscard]] std::string not_watched(const reflective::Finding& f) const {
     const auto& tables = file_.tables;
+    const bool any = f.configuration == none;
+    const auto streams = [](const auto& configuration, std::uint16_t topic) {
+      return std::any_of(configuration.streams.begin(), configuration.streams.end(),
+                         [topic](const auto& stream) { return stream.topic == topic; });
+    };
     for (const reflective::Term& term : tables.monitors[tables.transitions[f.where].monitor].terms) {
       if (term.op != Op::condition) continue;
       const std::uint16_t topic = tables.conditions[term.condition].topic;
       if (topic == none) continue;
-      bool streamed = false;
-      if (f.configuration != none)
-        for (const auto& stream : tables.configurations[f.configuration].streams)
-          streamed = streamed || stream.topic == topic;
-      if (!streamed) return spec::quoted(tables.topic(topic).name);
+      const bool streamed =
+          any ? std::any_of(tables.configurations.begin(), tables.configurations.end(),
+                            [&](const auto& configuration) { return streams(configuration, topic); })
+              : streams(tables.configurations[f.configuration], topic);
+      if (!streamed)
+        return "its monitor looks at " + spec::quoted(tables.topic(topic).name) + ", which " +
+               (any ? std::string{"no configuration asks for"}
+                    : named(f.configuration) + " does not ask for");
     }
-    return "a topic";
+    return "no configuration asks for all that its monitor looks at";
   }
   [[nodiscard]] std::string remedy(const reflective::Finding& f) const {
     const auto& tables = file_.tables;

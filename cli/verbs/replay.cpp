@@ -349,8 +349,8 @@ void stand_in(Session& session, const ReplayOptions& options, int& exit_code) {
     if (over == Over::gone) fail(bus->failure());
   }
   std::string text = fmt::format("{}, {} sent", counted(requests, "request"), counted(sent, "frame"));
-  add_count(text, refused, "requests refused");
-  add_count(text, silent, "requests for what was not recorded");
+  add_count(text, refused, "request", "refused");
+  add_count(text, silent, "request", "for what was not recorded");
   remark(text);
   exit_code = exit_code_after_interrupt(exit_success);
 }

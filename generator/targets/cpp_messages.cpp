@@ -127,8 +127,8 @@ class StructWriter {
       if (!field.flags && !all && (value.raw < field.raw_min || value.raw > field.raw_max)) continue;
       std::string name = cpp_name(value.name);
       if (!spelled.insert(name).second) {
-        name +=
-            "_" + (value.raw < 0 ? "minus_" + std::to_string(-(value.raw + 1)) : std::to_string(value.raw));
+        const auto bits = static_cast<std::uint64_t>(value.raw);
+        name += "_" + (value.raw < 0 ? "minus_" + std::to_string(~bits + 1) : std::to_string(bits));
         while (!spelled.insert(name).second) name += "_";
       }
       out.values.emplace_back(std::move(name), value.raw);

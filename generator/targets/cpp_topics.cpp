@@ -258,12 +258,9 @@ void write_constants(Writer& out, const TopicModel& topic) {
   const std::string head =
       "static constexpr std::array<ocm::protocol::FrameHead, " + std::to_string(frames) + "> frames";
   const std::vector<std::string> heads = frame_heads(topic);
-  const std::string only = heads.size() == 1 ? "{" + heads.front() + "}};" : "";
-  if (!only.empty() && 2 + head.size() + 1 + only.size() <= columns) {
-    out.line(head + "{" + only);
-  } else if (!only.empty()) {
+  if (heads.size() == 1) {
     out.line(head + "{");
-    out.line("    " + only);
+    out.line("    {" + heads.front() + "}};");
   } else {
     out.line(head + "{{");
     for (const std::string& its : heads) out.line("    " + its + ",");

@@ -25,7 +25,7 @@ class Pages {
       auto& values = values_[field.selector];
       for (const auto& range : field.selected)
         for (const std::uint64_t value : {range.first, std::min(range.last, most)})
-          if (value <= most && value <= range.last) values.push_back(value);
+          if (value <= most && value >= range.first) values.push_back(value);
     }
     for (auto& values : values_) {
       std::sort(values.begin(), values.end());

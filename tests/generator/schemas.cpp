@@ -314,7 +314,7 @@ TEST_CASE("the least and the greatest integer of sentences may be one, and not t
   CHECK(is_told(8, 7));
 }
 
-TEST_CASE("what is no file of sentences at all is told what one has in it") {
+TEST_CASE("of what is no file of sentences at all it is said what one has in it") {
   using ocm::spec::Problem;
   const auto only = [](const std::string& text) {
     const auto loaded = ocm::spec::parse_sentences(text, "s.json");

@@ -210,6 +210,27 @@ TEST_CASE("A selector and what it selects may end with the message, and beyond i
   CHECK(found(20, 0, 8, 2) == Found{1, false});
 }
 
+TEST_CASE("Of the values that select a field those make a page that its selector can have") {
+  const auto pages = [](protocol::SelectorRange range) {
+    const std::array<protocol::SelectorRange, 1> selected{range};
+    std::array<protocol::Field, 2> fields{};
+    fields[0].position = {0, 4};
+    fields[1].position = {8, 8};
+    fields[1].selector = 0;
+    fields[1].selected = selected;
+    protocol::FrameLayout layout;
+    layout.length = 2;
+    layout.fields = fields;
+    const sim::Pages made{layout};
+    return made.chosen(0) ? made.size() : 0;
+  };
+  CHECK(pages({12, 15}) == 2);
+  CHECK(pages({12, 20}) == 2);  // 12 and 15
+  CHECK(pages({15, 20}) == 1);
+  CHECK(pages({16, 20}) == 0);
+  CHECK(pages({16, 16}) == 0);
+}
+
 TEST_CASE("Each page comes once in a round, the lowest value first, of a range its ends") {
   const std::array<protocol::SelectorRange, 3> first{{{5, 5}, {3, 5}, {14, 14}}};
   const std::array<protocol::SelectorRange, 2> second{{{0, 0}, {14, 20}}};  // no frame holds 20

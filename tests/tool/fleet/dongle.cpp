@@ -47,7 +47,7 @@ class Device {
   }
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
-  /// Of one that is silent: what it was told, as much as `expected` has; less where no more comes.
+  /// Of one that is silent: what was written to it, as much as `expected` has; less where no more comes.
   std::string heard(const std::string& expected) {
     for (int looks = 0; looks < 50'000 && heard_.size() < expected.size(); ++looks)
       if (!hear()) ::usleep(100);

@@ -276,6 +276,28 @@ TEST_CASE("operate: of the topics that a monitor looks at the one is named that 
   CHECK(loaded.problems[0].what == R"(its monitor looks at "odometry", which "all" does not ask for)");
 }
 
+TEST_CASE(
+    "operate: of a transition from any configuration a topic is named that none asks for, if there is one") {
+  const auto problems = [](const std::string& of_second) {
+    const auto loaded = operate::parse(
+        R"({"name": "blind", "initial": "all", "fall_back": "halted", "settle": "60ms", "reaction": "20ms", "handling": "1ms",
+            "configurations": [{"name": "all", "streams": [{"topic": "ring"}]}, {"name": "halted"},
+                               {"name": "second", "streams": [)" +
+            of_second + R"(]}],
+            "monitors": [{"name": "near", "when": {"all": ["ring.sensor_1>5", "odometry.velocity.x>0.1m/s"]}}],
+            "transitions": [{"to": "halted", "when": "near"}, {"from": "all", "to": "second"},
+                            {"from": "second", "to": "halted"}]})",
+        "blind", amiro::catalogue, 500'000);
+    std::vector<std::string> said;
+    for (const auto& problem : loaded.problems) said.push_back(problem.what);
+    return said;
+  };
+  CHECK(problems("") ==
+        std::vector<std::string>{R"(its monitor looks at "odometry", which no configuration asks for)"});
+  CHECK(problems(R"({"topic": "odometry"})") ==
+        std::vector<std::string>{"no configuration asks for all that its monitor looks at"});
+}
+
 TEST_CASE("operate: of a set point that is outside the spec the field is named that is") {
   const auto oven = spec::parse(
       R"({"robot": "Oven", "namespace": "oven", "bus": {"bit_rate": 500000, "source": "decided"},

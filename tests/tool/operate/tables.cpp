@@ -160,7 +160,7 @@ TEST_CASE("operate: the tables have each condition, and how long a monitor is to
   CHECK(lasting == std::vector<base::Duration>{0s, 0s, 1500ms, 2s, 0s, 0s, 0s, 0s});
 }
 
-TEST_CASE("operate: refusals are told from the first one on, where a file says no number") {
+TEST_CASE("operate: refusals are said from the first one on, where a file says no number") {
   const auto loaded = with_change(R"({"refusals": true, "above": 3})", R"({"refusals": true})");
   std::string found;
   for (const auto& each : loaded.file->conditions)

@@ -183,7 +183,7 @@ TEST_CASE("page server: of a log from its beginning nothing is known that is beh
   desk.take(0s, 0x603, {0, 0, 0, 0, 0, 0, 0, 0});  // the other half of another
   CHECK(desk.said().empty());
   CHECK(desk.bounds().is_null());
-  // With the same periods as before, response times are measured anew.
+  // With the same periods as before, response times are measured from the beginning.
   desk.take(1s, ask_gyroscope, {1, 50, 0, 0});
   desk.turns(1s);
   CHECK(desk.said() == Strings{"/gyroscope 1"});

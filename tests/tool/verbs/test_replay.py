@@ -259,8 +259,8 @@ class Replaying(Case):
         self.assertEqual([frame for _, frame in out[len(gyro):]], ["602#0000000000000000", "603#00000000000000FF"])
         self.assertIn("the log has no sample of it", err)
         self.assertIn(f" requests, {len(out)} frames sent, ", err)
-        self.assertIn("1 requests refused", err)
-        self.assertIn("1 requests for what was not recorded", err)
+        self.assertIn("1 request refused", err)
+        self.assertIn("1 request for what was not recorded", err)
         self.interrupt(sim)
 
     def test_samples_that_are_due_often_come_as_often(self):
