@@ -285,8 +285,8 @@ TEST_CASE(
                                {"name": "second", "streams": [)" +
             of_second + R"(]}],
             "monitors": [{"name": "near", "when": {"all": ["ring.sensor_1>5", "odometry.velocity.x>0.1m/s"]}}],
-            "transitions": [{"to": "halted", "when": "near"}, {"from": "all", "to": "second"},
-                            {"from": "second", "to": "halted"}]})",
+            "transitions": [{"to": "halted", "when": "near"}, {"from": "all", "to": "second", "on_request": true},
+                            {"from": "second", "to": "halted", "on_request": true}]})",
         "blind", amiro::catalogue, 500'000);
     std::vector<std::string> said;
     for (const auto& problem : loaded.problems) said.push_back(problem.what);
