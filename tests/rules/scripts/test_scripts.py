@@ -159,6 +159,8 @@ class Mutate(Case):
         module = importlib.util.module_from_spec(spec)
         spec.loader.exec_module(module)
         for made, library in (("cli/output/CMakeFiles/ocm_output_objects.dir/__/logs/json_lines.cpp.o", "ocm_output"),
+                              ("cli/CMakeFiles/amiroctl_rooms.dir/Unity/unity_serve_cxx.cxx.o", "amiroctl_parts"),
+                              ("cli/CMakeFiles/amiroctl_busy.dir/output/printer.cpp.o", "amiroctl_parts"),
                               ("generator/spec/CMakeFiles/ocm_spec.dir/schema.cpp.o", "ocm_spec")):
             self.assertEqual(module.library_of(made), library)
 
