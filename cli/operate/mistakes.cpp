@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "ocm/reflective/check.hpp"
 
@@ -76,11 +77,14 @@ class Judge {
         return std::string{reflective::describe(f.kind)};
     }
   }
-  /// Names a topic of the transition's monitor that its configuration does not stream, or, of a transition
-  /// from any, none does; where each has one that does, none has them all.
+  /// Names a topic of the transition's monitor that its configuration does not stream. Where it leads from
+  /// any: one that none of those streams, if there is one.
   [[nodiscard]] std::string not_watched(const reflective::Finding& f) const {
     const auto& tables = file_.tables;
     const bool any = f.configuration == none;
+    std::vector<std::size_t> left;
+    for (std::size_t c = 0; any && c < tables.configurations.size(); ++c)
+      if (tables.leaves(tables.transitions[f.where], c)) left.push_back(c);
     const auto streams = [](const auto& configuration, std::uint16_t topic) {
       return std::any_of(configuration.streams.begin(), configuration.streams.end(),
                          [topic](const auto& stream) { return stream.topic == topic; });
@@ -90,15 +94,15 @@ class Judge {
       const std::uint16_t topic = tables.conditions[term.condition].topic;
       if (topic == none) continue;
       const bool streamed =
-          any ? std::any_of(tables.configurations.begin(), tables.configurations.end(),
-                            [&](const auto& configuration) { return streams(configuration, topic); })
+          any ? std::any_of(left.begin(), left.end(),
+                            [&](std::size_t c) { return streams(tables.configurations[c], topic); })
               : streams(tables.configurations[f.configuration], topic);
       if (!streamed)
         return "its monitor looks at " + spec::quoted(tables.topic(topic).name) + ", which " +
-               (any ? std::string{"no configuration asks for"}
+               (any ? std::string{"no configuration that it leads from asks for"}
                     : named(f.configuration) + " does not ask for");
     }
-    return "no configuration asks for all that its monitor looks at";
+    return "no configuration that it leads from asks for all that its monitor looks at";
   }
   [[nodiscard]] std::string remedy(const reflective::Finding& f) const {
     const auto& tables = file_.tables;

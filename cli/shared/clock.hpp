@@ -1,5 +1,5 @@
 /// Time as the tool has it: here, and nowhere else in what sends, receives, records and plays, a clock is
-/// read and is waited. clock.cpp asks the kernel. A test links tests/tool/clock/virtual_clock.cpp in its
+/// read and is waited. clock.cpp asks the kernel. A test links tests/tool/clock/world.cpp in its
 /// place: there time passes only when the code under test waits, so that hours take milliseconds and a run
 /// can be repeated.
 #pragma once

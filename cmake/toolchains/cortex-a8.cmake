@@ -15,7 +15,7 @@ set(CMAKE_CXX_FLAGS_INIT "-mcpu=cortex-a8 -mfpu=neon -mfloat-abi=hard -ffunction
 set(CMAKE_EXE_LINKER_FLAGS_INIT "-static -Wl,--gc-sections")
 # Optimised for size: MinSizeRel, the default here, is half of Release. The tool as a whole (-flto) and equal functions once
 # (gold's --icf) are 6 % less; optimisations of loops that make code larger, left out, another 1.4 %; the whole tool at once, not in
-# partitions, 0.5 %, and texts that end as others do once (gold's -O2), 0.4 %. The tests' programs are compiled without all that.
+# partitions, 0.5 %, and texts that end as others do once (gold's -O2), 0.4 %. The tests of the library are compiled without all that.
 set(CMAKE_BUILD_TYPE MinSizeRel CACHE STRING "Optimised for size")
 set(CMAKE_CXX_FLAGS_MINSIZEREL_INIT "-Os -DNDEBUG")
 set(CMAKE_EXE_LINKER_FLAGS_MINSIZEREL_INIT "-s -flto=auto -flto-partition=one -fuse-ld=gold -Wl,--icf=safe -Wl,-O2")

@@ -204,7 +204,9 @@ TEST_CASE("targets: names of a DBC file have 32 characters, and each is given ou
   CHECK(other.unique(longest + "c") == longest);
 }
 
-TEST_CASE("targets: values of one name have their numbers behind it in C++, 0 too, and no other's name") {
+TEST_CASE(
+    "targets: in C++ the second value of one name has its number behind it, 0 too, and no name that is "
+    "taken") {
   const std::string text = made("cpp", R"({"robot": "r", "messages": [{"name": "M", "id": 1, "fields": [
         {"name": "x", "byte": 0, "type": "u8", "values": [{"raw": 1, "name": "a.b"}, {"raw": 0, "name": "a-b"},
          {"raw": 5, "name": "a_b_7"}, {"raw": 7, "name": "a b"}, {"raw": 9, "name": "c"}]}]}]})");

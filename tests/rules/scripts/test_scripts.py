@@ -535,6 +535,18 @@ class Summary(Case):
             self.assertEqual(done.returncode, code, done.stdout + done.stderr)
             self.assertEqual("style: shellcheck is missing, so no script was checked" in done.stdout, bool(code))
 
+    def test_what_the_sanitizers_run_runs_once_by_day(self):
+        self.stand_in("cmake", "")
+        asked = self.tree / "asked"
+        self.stand_in("ninja", "printf 'all:\\n  input: phony\\n    amiroctl\\n'")
+        self.stand_in("ctest", f"""case $* in *json*) echo '{{"tests": [{{"name": "unit_can"}}, {{"name": "unit_top"}}]}}' ;; *) echo "$*" >>{asked} ;; esac""")
+        for words, explore, left_out in (("release,sanitize", "1", True), ("release,sanitize", "2", False), ("release", "1", False)):
+            asked.unlink(missing_ok=True)
+            self.run_script("test", "--only", words, OCM_EXPLORE=explore)
+            first = asked.read_text(encoding="utf-8").splitlines()[0]
+            self.assertIn("--preset release", first)
+            self.assertEqual(" -E ^(unit_top)$" in first, left_out, first)
+
     def test_what_cmake_leaves_out_fails_a_run_of_all(self):
         self.stand_in("cmake", f"mkdir -p {self.tree}/build; printf 'qemu_*\\tno qemu-system-arm\\n' >{self.tree}/build/left_out.txt")
         self.stand_in("ctest", "exit 0")

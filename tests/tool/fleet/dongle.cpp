@@ -26,7 +26,7 @@ using namespace ocm;
 using cli::fleet::open_dongle;
 using mapper::server::Dialect;
 
-/// Silent, or says something once, as soon as it has heard some word.
+/// Silent, or says something each time that it has heard some word.
 class Device {
  public:
   explicit Device(std::string word = {}, std::string answer = {})
@@ -62,13 +62,18 @@ class Device {
 
  private:
   void talk() {
-    while (!over_ && heard_.find(word_) == std::string::npos) {
-      pollfd line{primary_.get(), POLLIN, 0};
-      if (::poll(&line, 1, 10) > 0) static_cast<void>(hear());
-    }
-    for (std::string_view rest = answer_; !over_ && !rest.empty();) {
-      const ssize_t size = ::write(primary_.get(), rest.data(), rest.size());
-      if (size > 0) rest.remove_prefix(static_cast<std::size_t>(size));
+    for (std::size_t answered = 0; !over_;) {
+      const auto found = heard_.find(word_, answered);
+      if (found == std::string::npos) {
+        pollfd line{primary_.get(), POLLIN, 0};
+        if (::poll(&line, 1, 10) > 0) static_cast<void>(hear());
+        continue;
+      }
+      answered = found + word_.size();
+      for (std::string_view rest = answer_; !over_ && !rest.empty();) {
+        const ssize_t size = ::write(primary_.get(), rest.data(), rest.size());
+        if (size > 0) rest.remove_prefix(static_cast<std::size_t>(size));
+      }
     }
   }
   bool hear() {

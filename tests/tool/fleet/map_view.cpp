@@ -26,7 +26,10 @@ class Bench {
   int code = 0;
   std::string out, err;
 
-  Bench() { std::filesystem::create_directories(folder_); }
+  Bench() {
+    std::filesystem::remove_all(folder_);
+    std::filesystem::create_directories(folder_);
+  }
   ~Bench() { std::filesystem::remove_all(folder_); }
   Bench(const Bench&) = delete;
   Bench& operator=(const Bench&) = delete;

@@ -21,7 +21,7 @@ namespace ocm::test {
 class PlayedOwner {
  public:
   explicit PlayedOwner(std::vector<std::string> answers)
-      : server_(path(), std::move(answers), PlayedServer::Says::ahead) {}
+      : server_(free_path(), std::move(answers), PlayedServer::Says::ahead) {}
   ~PlayedOwner() { std::filesystem::remove(path()); }
   PlayedOwner(const PlayedOwner&) = delete;
   PlayedOwner& operator=(const PlayedOwner&) = delete;
@@ -38,6 +38,12 @@ class PlayedOwner {
  private:
   static std::string path() {
     return (std::filesystem::temp_directory_path() / fmt::format("ocm-joined-{}.sock", ::getpid())).string();
+  }
+
+  /// Where a run that was killed has left its own.
+  static std::string free_path() {
+    std::filesystem::remove(path());
+    return path();
   }
 
   PlayedServer server_;

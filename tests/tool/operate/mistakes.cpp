@@ -278,10 +278,11 @@ TEST_CASE("operate: of the topics that a monitor looks at the one is named that 
 
 TEST_CASE(
     "operate: of a transition from any configuration a topic is named that none asks for, if there is one") {
-  const auto problems = [](const std::string& of_second) {
+  const auto problems = [](const std::string& of_second, const std::string& of_halted = "") {
     const auto loaded = operate::parse(
         R"({"name": "blind", "initial": "all", "fall_back": "halted", "settle": "60ms", "reaction": "20ms", "handling": "1ms",
-            "configurations": [{"name": "all", "streams": [{"topic": "ring"}]}, {"name": "halted"},
+            "configurations": [{"name": "all", "streams": [{"topic": "ring"}]}, {"name": "halted", "streams": [)" +
+            of_halted + R"(]},
                                {"name": "second", "streams": [)" +
             of_second + R"(]}],
             "monitors": [{"name": "near", "when": {"all": ["ring.sensor_1>5", "odometry.velocity.x>0.1m/s"]}}],
@@ -293,9 +294,13 @@ TEST_CASE(
     return said;
   };
   CHECK(problems("") ==
-        std::vector<std::string>{R"(its monitor looks at "odometry", which no configuration asks for)"});
-  CHECK(problems(R"({"topic": "odometry"})") ==
-        std::vector<std::string>{"no configuration asks for all that its monitor looks at"});
+        std::vector<std::string>{
+            R"(its monitor looks at "odometry", which no configuration that it leads from asks for)"});
+  CHECK(
+      problems(R"({"topic": "odometry"})") ==
+      std::vector<std::string>{"no configuration that it leads from asks for all that its monitor looks at"});
+  // What it leads to is not asked.
+  CHECK(problems("", R"({"topic": "odometry"})") == problems(""));
 }
 
 TEST_CASE("operate: of a set point that is outside the spec the field is named that is") {

@@ -179,7 +179,10 @@ TEST_CASE("log file: it is written to as a file that blocks, a pipe too") {
   const int high = ::fcntl(low, F_DUPFD_CLOEXEC, 100);
   REQUIRE(high >= 100);
   std::vector<int> filled;
-  while (next_descriptor() < high) filled.push_back(::open("/dev/null", O_RDONLY | O_CLOEXEC));
+  while (next_descriptor() < high) {
+    filled.push_back(::open("/dev/null", O_RDONLY | O_CLOEXEC));
+    REQUIRE(filled.back() >= 0);
+  }
   const std::string pipe = folder.file("pipe"), plain = folder.file("plain.log");
   REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
   const int reader = ::open(pipe.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);

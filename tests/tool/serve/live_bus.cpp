@@ -25,12 +25,15 @@ using namespace ocm;
 using namespace ocm::cli::serve;
 using Json = nlohmann::json;
 
+/// Of a name that no operator's bus has.
+const std::string quiet = "quiet" + std::to_string(::getpid());
+
 /// On which no frame comes; some have never reached its reader.
 class QuietBus final : public transport::Bus {
  public:
   explicit QuietBus(std::uint64_t lost) { counters_.lost = lost; }
 
-  [[nodiscard]] std::string_view name() const override { return "can97"; }
+  [[nodiscard]] std::string_view name() const override { return quiet; }
   base::Result<bool> send(const can::Frame&) override { return true; }
   base::Result<can::Received> receive(base::Duration) override { return base::Error::timed_out; }
   transport::Outcome<void> subscribe(std::span<const can::Filter>) override { return {}; }
@@ -47,7 +50,7 @@ TEST_CASE("live bus: what is lost of a bus is in its figures from the first mome
   const spec::Model model;
   ServeOptions options;
   options.over = [looks = 0]() mutable { return looks++ != 0; };  // it looks once
-  PageServer server{amiro::catalogue, model, std::move(options), {"can97", true, false}, {"can97"}, 500'000};
+  PageServer server{amiro::catalogue, model, std::move(options), {quiet, true, false}, {quiet}, 500'000};
   test::Captured address{STDOUT_FILENO};
   server.open();
   CHECK(address.text().starts_with("http://127.0.0.1:"));
@@ -62,7 +65,7 @@ TEST_CASE("live bus: what is lost of a bus is in its figures from the first mome
   while (const auto message = server.viewers().next(viewer, base::Time{}))
     said[static_cast<State>(message->head[1])] = Json::parse(*message->payload);
   REQUIRE(said.size() == 4);
-  CHECK(said[State::bus]["buses"][0]["name"] == "can97");
+  CHECK(said[State::bus]["buses"][0]["name"] == quiet);
   CHECK(said[State::bus]["buses"][0]["lost"] == 3);
   CHECK(said[State::bus]["viewers"] == 1);
   CHECK(said[State::boards]["boards"].size() == 3);

@@ -27,6 +27,24 @@ client::Reception take(Receiver& receiver, std::string_view text, base::Duration
   return receiver.take({base::Time{at}, *frame});
 }
 
+TEST_CASE("what several receivers count is each number's sum") {
+  const client::ReceiverCounters one{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11};
+  client::ReceiverCounters sum{100, 200, 300, 400, 500, 600, 700, 800, 900, 1000, 1100};
+  sum += one;
+  sum += one;
+  CHECK(sum.frames == 102);
+  CHECK(sum.samples == 204);
+  CHECK(sum.commands == 306);
+  CHECK(sum.unknown == 408);
+  CHECK(sum.remote == 510);
+  CHECK(sum.fd == 612);
+  CHECK(sum.wrong_dlc == 714);
+  CHECK(sum.incomplete == 816);
+  CHECK(sum.errors == 918);
+  CHECK(sum.transport == 1020);
+  CHECK(sum.unselected == 1122);
+}
+
 TEST_CASE("a sample of one frame is complete at once") {
   Receiver receiver{amiro::catalogue};
   const auto reception = take(receiver, "608#3E001E00FCFF", 110'380ms);
