@@ -182,31 +182,64 @@ TEST_CASE("admission: what is heard may leave hardly any time, and is computed t
   CHECK(text.find("exit") == std::string::npos);
 }
 
-TEST_CASE(
-    "admission: on a slow bus a frame of anything else is hardly any load; short names have a narrow "
-    "column") {
+/// What is said, with the table, of a gyroscope with a short name and without a deadline, on a bus of another
+/// bit rate.
+std::string explained_at(std::uint32_t bit_rate, std::string_view period,
+                         const std::vector<PlayedBus::Incoming>& incoming = {}) {
   std::vector<protocol::Topic> topics{amiro::catalogue.topics.begin(), amiro::catalogue.topics.end()};
   const auto gyroscope = std::find_if(topics.begin(), topics.end(),
                                       [](const protocol::Topic& topic) { return topic.name == "gyroscope"; });
   REQUIRE(gyroscope != topics.end());
   gyroscope->name = "gyro";
   gyroscope->aliases = {};
-  const protocol::Catalogue catalogue{amiro::catalogue.robot, 10'000, amiro::catalogue.boards, topics};
+  gyroscope->deadline = {};
+  const protocol::Catalogue catalogue{amiro::catalogue.robot, bit_rate, amiro::catalogue.boards, topics};
   World world{1};
-  PlayedBus bus{world, {}};
-  const std::vector<std::string_view> words{"publish", "gyro", "1s"};
+  PlayedBus::Conditions conditions;
+  conditions.incoming = incoming;
+  PlayedBus bus{world, conditions};
+  const std::vector<std::string_view> words{"publish", "gyro", period};
   const auto command = cli::words::CommandParser{catalogue}.parse_line(words);
   REQUIRE(command.ok());
   cli::RefusalWatch refusals{catalogue, "publish", cli::Confirm::yes};
   const cli::AdmissionOptions explained{.force = false, .explain = true, .listen = 100ms};
   Captured out{STDOUT_FILENO};
   const Leaving left = leaving([&] { cli::admit(catalogue, bus, *command, explained, refusals); });
-  const std::string text = out.text();
-  CAPTURE(text, left.text);
-  CHECK_FALSE(left.code);
+  return out.text() + left.text;
+}
+
+TEST_CASE(
+    "admission: on a slow bus a frame of anything else is hardly any load; short names have a narrow "
+    "column") {
+  const std::string text = explained_at(10'000, "1s");
+  CAPTURE(text);
+  CHECK(text.find("amiroctl: ") == std::string::npos);
   CHECK_THAT(text, Catch::StartsWith("ID        MESSAGE     PERIOD   DEADLINE  BITS "));
   // 111 bits of 10,000 a second, and 135 bits once an hour.
   CHECK_THAT(text, Catch::Contains("\nload 1.1 % of 10000 bit/s at worst; 0 identifiers heard within "));
+}
+
+TEST_CASE("admission: the shortest period is of whole microseconds, and where none passes of milliseconds") {
+  // 111 bits behind the 135 of any other frame; a request has 16 bits for a count of microseconds.
+  const std::string shortest = "the shortest period that passes beside what was heard is ";
+  CHECK_THAT(explained_at(500'000, "1s"), Catch::Contains(shortest + "492us\n"));
+  CHECK_THAT(explained_at(1'000, "1s"), Catch::Contains(shortest + "246ms\n"));
+  const std::string refused = explained_at(1'000, "100ms");
+  CHECK_THAT(refused, Catch::Contains("publish: gyro every 100ms at medium does not fit on the bus"));
+  CHECK_THAT(refused, Catch::Contains(" is 246ms (--listen hears more)"));
+  // And behind 85 of a frame that was heard: 413.75 us.
+  std::vector<PlayedBus::Incoming> incoming;
+  for (const Duration at : {7ms, 40ms, 73ms})
+    incoming.push_back({World::start + at, frame(0x111, {1, 2, 3})});
+  CHECK_THAT(explained_at(800'000, "1s", incoming), Catch::Contains(shortest + "414us\n"));
+}
+
+TEST_CASE("admission: a stream that is asked for without a period has that of its topic") {
+  std::istringstream lines{
+      said({{"publish", "di_wheel_drive_status"}, {.force = false, .explain = true, .listen = 100ms}, {}})};
+  std::string row;
+  while (row.find(", asked for") == std::string::npos && std::getline(lines, row)) continue;
+  CHECK_THAT(row, Catch::Matches("71B +di_wheel_drive_status/identity +1s +1s .*, asked for"));
 }
 
 // --- what becomes of a behaviour ---

@@ -246,6 +246,23 @@ TEST_CASE(
   CHECK_FALSE(counted.broadcasts.held_up_since());
 }
 
+TEST_CASE("broadcasts: one that the bus holds up until listeners have given up begins again as it is tried") {
+  Counted counted;
+  counted.begin(0);
+  counted.advance();
+  const Moment given_up = World::start + j1939::timeout::t1;
+  for (;;) {
+    counted.now = counted.broadcasts.next_event();
+    if (counted.now > given_up) break;
+    counted.broadcasts.advance(counted.now, [](const can::AnyFrame&) { return std::optional<Moment>{}; });
+  }
+  CHECK(counted.now == given_up + 5ms);
+  CHECK(counted.broadcasts.counts().late == 0);
+  counted.advance();
+  CHECK(counted.rounds[0] == 2);
+  CHECK(counted.broadcasts.counts().late == 1);
+}
+
 TEST_CASE("broadcasts: only another message of the source makes one wait") {
   // Alone, and as often as it can be: every frame 1 ms late is a turn in 50.
   Counted alone;

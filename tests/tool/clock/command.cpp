@@ -453,6 +453,18 @@ TEST_CASE("drive: it begins 40 ms after a question that was held up has left, or
   }
 }
 
+TEST_CASE("drive: while a question is held up it waits between two looks") {
+  const Silence silence;
+  int looks = 0;
+  World world{1};
+  world.beside = [&looks] { ++looks; };
+  PlayedBus bus{world, stuck_for(400ms)};
+  Timeline timeline{bus, amiro::catalogue, "drive", Timeline::Others::refused, cli::Confirm::no, {}};
+  CHECK(timeline.listen_first());
+  CHECK(world.now() - World::start >= 440ms);
+  CHECK(looks < 10'000);  // some ten for each millisecond
+}
+
 TEST_CASE("drive: set points that come while the question is held up are as old as they are") {
   const Silence silence;
   can::Frame theirs = drive(1s).frames.front();

@@ -36,6 +36,8 @@ class Robot:
         self.turn_s = 1.0
         self.turning_until = None
         self.blocked_cm = None   # stops after so many cm
+        self.slides_cm = 0       # so far ahead, once, from where it was told to stop to where it stands
+        self.told_to_stop = False
         self.bad_beyond_cm = None  # farther from where it was switched on half of its packets are lost
         self.chance = random.Random(7)
         self.busy_until = 0.0
@@ -76,6 +78,7 @@ class Robot:
             self.x += way * math.cos(self.heading)
             self.y += way * math.sin(self.heading)
             self.busy_until = now + (max(0.0, distance / self.speed) + 0.4 if line != "{U,0,0}" else 0.0)
+            self.told_to_stop = line == "{U,0,0}"
             self.idled = 0.0
 
     def hear_calibrate(self, number, now):
@@ -159,6 +162,10 @@ class Robot:
         if now >= self.busy_until and now - self.idled >= 0.5:
             self.idled = now
             text += "{S,IDL}\n"
+            if self.told_to_stop and self.slides_cm:
+                self.x += self.slides_cm / 100
+                self.slides_cm = 0
+                self.spoke = now + 0.3  # when it says so
         return text
 
 

@@ -137,6 +137,14 @@ class Admission(Case):
         _, err = self.run_tool("--spec", path, "publish", "gyro", "3ms", code=1)
         self.assertIn("the shortest period that passes beside what was heard within 100ms is 3.515ms (--listen hears more);", err)
 
+    def test_a_signal_ends_its_listening(self):
+        self.start_sim()
+        publish = self.start("publish", "gyro", "50ms", "--listen", "60s")
+        self.assertIn("bus: sim", publish.stderr.readline())
+        self.settle()
+        self.interrupt(publish)
+        self.assertEqual(publish.returncode, 130)
+
     def test_it_listens_for_a_tenth_of_a_second_and_force_does_not(self):
         self.start_sim()
         def seconds(*arguments):

@@ -146,6 +146,10 @@ class OnTheBus(Case):
 
     def test_a_sensor_that_nobody_asked(self):
         self.start_sim()
+        # Of a bus on which nothing comes the first one is named, but not where an identifier chooses.
+        for words, hints in (((), ["a sensor is silent until it is asked, as by `amiroctl publish odometry 500ms`"]), (("--filter", "600:700"), [])):
+            _, err = self.run_tool("listen", *words, "--timeout", "2100ms")
+            self.assertEqual([line for line in err.splitlines() if "silent" in line], hints, err)
         self.run_tool("publish", "odom", "100ms")
         hint = "a sensor is silent until it is asked, as by `amiroctl publish gyroscope 500ms`"
         for words, told in ((("gyro",), True), (("--field", "gyro.z"), True), (("gyro", "--filter", "600:700"), True),

@@ -28,7 +28,7 @@ class Keys(harness.Case):
         self.start_sim("--frozen")
         self.listener = self.listen("motors", "--commands")
 
-    def drive(self, *arguments, term="xterm", stdout=None, columns=100):
+    def drive(self, *arguments, term="xterm", stdout=None, columns=100, begins=b"rests"):
         """Returns when it takes keys, if it shows them on the terminal."""
         primary, secondary = pty.openpty()
         fcntl.ioctl(secondary, termios.TIOCSWINSZ, struct.pack("HHHH", 24, columns, 0, 0))
@@ -41,7 +41,7 @@ class Keys(harness.Case):
         self.addCleanup(self.close)
         self.shown = b""
         if stdout is None:
-            self.shows(b"rests")
+            self.shows(begins)
         return process
 
     def close(self):
@@ -259,6 +259,27 @@ class Keys(harness.Case):
                 process.communicate(timeout=60)
                 self.assertNotIn(b"arrows", self.shown)  # no more, or not at all
                 self.close()
+
+    def test_a_line_that_is_wider_than_the_terminal_is_cut(self):
+        process = self.drive(columns=len("10cm/s 45deg/s  rests"), begins=b"10cm/s 45deg/s  rest")
+        os.write(self.primary, b"q")
+        self.shows(b"\x1b[K10cm/s 45deg/s  rest\r\n")  # the last column stays free
+        process.communicate(timeout=60)
+
+    def test_a_default_of_what_drives_keeps_no_stop_from_being_sent(self):
+        for option, value in (("--keys", "true"), ("--gamepad", "/dev/null")):
+            with self.subTest(option=option):
+                name = "AMIROCTL_" + option[2:].upper()
+                self.environment[name] = value
+                self.listener = self.listen("motors", "--commands")
+                self.run_tool("drive", "stop")
+                self.settle()
+                out, _ = self.interrupt(self.listener)
+                self.assertEqual([sample["data"] for sample in self.objects(out)], [REST])
+                del self.environment[name]
+                # What is typed is meant.
+                _, said = self.run_tool("drive", "stop", option, *(() if value == "true" else (value,)), code=2)
+                self.assertIn("'stop' is no speed", said)
 
     def test_every_end_rests_the_motors(self):
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT):

@@ -176,6 +176,16 @@ class Goto(Line):
         begin = self.avr.heard.index("{U,0,0}")  # the set point before it may be said twice, too
         self.assertEqual(self.avr.heard[begin:], ["{U,0,0}"] * 6)
 
+    def test_a_stop_says_where_the_robot_came_to_rest(self):
+        """It says so behind its idle, and what it has said before is of where it was."""
+        self.avr.x = self.avr.y = 0.5
+        self.avr.start = (0.5, 0.5, 0.0)
+        self.avr.speed = 1
+        self.tool("goto", "AVR", "0", "20", "--no-wait")
+        self.avr.slides_cm = 7
+        out, _ = self.tool("goto", "AVR", "0", "0")
+        self.assertEqual(out, "AVR: x 27 cm, y 0 cm, heading 0 deg\n")
+
     def test_a_stop_that_no_robot_hears_fails(self):
         self.tool("robots", "--listen", "100ms")
         self.avr.silent = True
@@ -356,7 +366,8 @@ class BadLinks(Line):
         _, err = self.tool("goto", "AVR", "0", "50", "--call-back", code=1)
         self.assertRegex(err, "the link to AVR is bad: .* so it was not sent")
         self.assertNotIn("{U,0,50}", self.avr.heard)
-        self.tool("goto", "AVR", "0", "0", "--call-back")  # a stop is said
+        _, err = self.tool("goto", "AVR", "0", "0", "--call-back")  # a stop is said
+        self.assertRegex(err, r"(?m)^goto: the link to AVR is bad: ")
 
     def test_nobody_would_watch(self):
         _, err = self.run_tool("goto", "AVR", "0", "20", "--no-wait", "--call-back", code=2)

@@ -107,6 +107,14 @@ class OnARobotThatRefuses(WithAdapter, Case):
         _, err = self.run_tool(*bus, "run", path, code=1)
         self.assertIn("run: light_ring refuses led_1: bad_length", err)
 
+    def test_a_script_asks_once_what_the_boards_do_by_themselves(self):
+        """While it listens before its first step, or 100 ms before its drive."""
+        for late in ("0s", "105ms", "120ms", "600ms"):
+            bus = self.robot({})
+            self.run_tool(*bus, "run", self.script(f"{late} drive 5cm/s --for 100ms\n"), "--no-confirm")
+            self.assertEqual(self.played.frames.count("20D#02"), 1, (late, self.played.frames))
+            self.assertEqual(self.played.frames[-1], REST)
+
     def test_a_script_whose_drive_is_refused_ends(self):
         bus = self.robot({FORWARDS: [refusal(0x01, BAD_LENGTH)]})
         _, err = self.run_tool(*bus, "run", self.script("0s drive 5cm/s\n60s led 1 red\n"), code=1, timeout=50)

@@ -330,7 +330,7 @@ class Replaying(Case):
         self.start_sim()
         drive = self.write_log(*((1 + i / 10, "201#50C3000000000000") for i in range(600)))
         recorder = self.recording("held.log")
-        replay = self.start("replay", drive)
+        replay = self.start("replay", drive, "--loop", "2")  # the second pass is out of date, too
         self.recorded("held.log", 2)
         replay.send_signal(signal.SIGSTOP)
         time.sleep(2)  # longer than motors wait for a set point

@@ -103,6 +103,11 @@ class Terminal(Case):
                     for line in shown.splitlines():  # a word that is wider than the terminal has a line of its own
                         self.assertTrue(len(line) <= columns or len(line.split()) == 1, line)
 
+    def test_of_a_topic_what_is_broken_goes_on_below_its_text(self):
+        lines = self.on_terminal("info", "gyro", columns=60).splitlines()
+        indents = {len(line) - len(line.lstrip()) for line in lines}
+        self.assertEqual(indents, {0, 2, 13, 4, 8})  # of its facts, and of its fields
+
     def test_what_was_heard_fits_the_width_and_breaks_no_word(self):
         self.run_tool("send", "208#03")  # the board says that it has refused it
         for arguments, code in ((("doctor", "--listen", "300ms"), 0), (("publish", "mag", "900us", "--dry-run", "--explain"), 0)):

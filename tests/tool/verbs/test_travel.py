@@ -3,6 +3,7 @@
 import json
 import os
 import re
+import resource
 import signal
 import subprocess
 import time
@@ -103,7 +104,7 @@ class Travel(Case):
         travel = self.start("travel", "1m", "--no-confirm")
 
         def say_that_it_is_not():
-            others.stdin.write("60D#0000000000000000\n")
+            others.stdin.write("60D#0001000000000000\n")  # the one before has arrived
             others.stdin.flush()
         for line in listener.stdout:  # each question is answered
             if '"topic":"travel"' in line:
@@ -155,9 +156,22 @@ class Travel(Case):
         _, err = travel.communicate(timeout=20)
         self.assertEqual(travel.returncode, 1, err)
         self.assertRegex(err, r"travel: this program did not run for \d+ms, so no further command is sent")
+        self.settle()
         out, _ = self.interrupt(listener)
         sent = [sample["data"] for sample in self.objects(out) if sample["topic"] == "travel"]
         self.assertLessEqual(set(sent), {"0000000000000000"})
+        # What it has asked for ends all the same.
+        asked = [line["fields"]["mode"] for line in self.objects(out) if line.get("frame") == "request"]
+        self.assertEqual(asked[-1:], ["stop"], out)
+
+    def test_it_waits_between_two_looks(self):
+        """At a robot that travels, and for the answer of a board that is off. Without a wait it looks thousands of times a second."""
+        for options, code in (((), 0), (("--without", "di_wheel_drive"), 1)):
+            sim = self.start_sim(*options)
+            before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_nvcsw
+            self.run_tool("travel", "20cm", "--speed", "10cm/s", code=code)
+            self.assertLess(resource.getrusage(resource.RUSAGE_CHILDREN).ru_nvcsw - before, 1500, options)
+            self.interrupt(sim)
 
     def test_force_beside_what_is_held_and_told_by_no_sample(self):
         self.start_sim()
