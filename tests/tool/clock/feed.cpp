@@ -14,6 +14,7 @@
 
 #include "ocm/topics/amiro.hpp"
 
+#include "cli/logs/packing.hpp"
 #include "cli/shared/messages.hpp"
 #include "tests/tool/captured.hpp"
 #include "tests/tool/clock/played_bus.hpp"
@@ -56,6 +57,7 @@ TEST_CASE("log feed: frames come at their times, once each, forwards and again f
   CHECK(feed.playing().at == 0ms);
   CHECK_FALSE(feed.playing().ended);
   CHECK(feed.interfaces() == std::vector<std::string>{"a", "b"});
+  CHECK(feed.is_whole());
   std::vector<std::uint32_t> got;
   std::string on;
   const auto take = [&](const log::Entry& entry, const log::Interfaces& interfaces) {
@@ -111,12 +113,51 @@ TEST_CASE("log feed: a log out of order is as long as its last time, and one tha
   const auto none = [](const log::Entry&, const log::Interfaces&) {};
   Captured err{STDERR_FILENO};
   feed.go_to(10ms, none);
+  CHECK(feed.is_whole());
   feed.go_to(99ms, none);
   feed.rewind();
   feed.go_to(99ms, none);
   CHECK(err.text() ==
         fmt::format("{}: 60 of 100 frames are not there any more: was it cut, or replaced?\n", cut));
   CHECK(feed.playing().ended);
+  CHECK_FALSE(feed.is_whole());
+}
+
+TEST_CASE("log feed: of a log that is damaged what comes before is played, and it is not whole") {
+  const auto packer = cli::logs::make_packer(cli::logs::Packing::gzip);
+  if (!packer) return;  // built without zlib
+  std::string packed;
+  packer.value->pack(lines(100), packed, cli::logs::Packer::Until::ended);
+  packed.resize(packed.size() - 4);  // of its checksum and length
+  const World world{1};
+  const Folder folder;
+  const std::string path = folder.put("a.log.gz", packed);
+  Captured err{STDERR_FILENO};
+  LogFeed feed{path, {}, amiro::catalogue};
+  int frames = 0;
+  feed.go_to(1h, [&](const log::Entry&, const log::Interfaces&) { ++frames; });
+  const std::string said = err.text();
+  CAPTURE(said);
+  CHECK(feed.playing().length == 99ms);
+  CHECK(frames == 100);
+  CHECK_FALSE(feed.is_whole());
+  CHECK(said.starts_with(path + ": cannot be read beyond byte "));
+  CHECK(said.ends_with(": the gzip data ends in the middle\n"));
+}
+
+TEST_CASE("log feed: a log of one frame is at its end with that") {
+  const World world{1};
+  const Folder folder;
+  LogFeed feed{folder.put("a.log", lines(1)), {}, amiro::catalogue};
+  CHECK(feed.playing().length == 0ms);
+  CHECK_FALSE(feed.playing().ended);
+  int frames = 0;
+  for (const auto at : {0ms, 5ms, 0ms}) {
+    feed.go_to(at, [&](const log::Entry&, const log::Interfaces&) { ++frames; });
+    CHECK(frames == 1);
+    CHECK(feed.playing().at == 0ms);
+    CHECK(feed.playing().ended);
+  }
 }
 
 TEST_CASE("log feed: what cannot be wound is refused") {

@@ -11,6 +11,7 @@
 #include <string>
 #include <string_view>
 #include <unistd.h>
+#include <utility>
 
 #include <catch2/catch.hpp>
 
@@ -97,6 +98,23 @@ TEST_CASE("file source: a whole file is as long as it may be, and no longer") {
   CHECK(folder.text.empty());
   CHECK(folder.failure == "Is a directory");
   CHECK(cli::logs::read_file(file.path() + ".none", 10).failure == "No such file or directory");
+}
+
+TEST_CASE("file source: a byte order mark is passed over, and nothing that begins alike") {
+  for (const auto& [text, rest] : {std::pair{"\xEF\xBB\xBF"
+                                             "abc"sv,
+                                             "abc"sv},
+                                   {"\xEF\xBB\xBF"sv, ""sv},
+                                   {""sv, ""sv},
+                                   {"abc"sv, "abc"sv},
+                                   {"\xEF\xBB"sv, "\xEF\xBB"sv},
+                                   {"\xEF\xBC\x88("sv, "\xEF\xBC\x88("sv},
+                                   {"\xEF\xBB\xBF\xEF\xBB\xBF"sv, "\xEF\xBB\xBF"sv}}) {
+    log::MemorySource source{text};
+    log::Input input{source};
+    cli::logs::skip_byte_order_mark(input);
+    CHECK(input.peek(100) == rest);
+  }
 }
 
 TEST_CASE("inflate: data of zlib is unpacked as far as there is room for it, and as far as it is whole") {

@@ -3,6 +3,8 @@
 #include <array>
 #include <random>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include <catch2/catch.hpp>
@@ -485,6 +487,324 @@ TEST_CASE("JSON lines: the earliest and the latest time of 64 bits", "[output]")
   REQUIRE(log.entries.size() == 2);
   CHECK(log.entries[0].time.time_since_epoch().count() == INT64_MIN);
   CHECK(log.entries[1].time.time_since_epoch().count() == INT64_MAX);
+}
+
+TEST_CASE(
+    "JSON lines: topic, priority and frame beside the identifier agree with it, by any name of the topic",
+    "[output]") {
+  CHECK(frame_of(R"({"id":"608","topic":"gyro","data":"0300FFFF0000"})") == "608#0300FFFF0000");
+  CHECK(frame_of(R"({"id":"608","priority":"medium","frame":"gyroscope","data":"0300FFFF0000"})") ==
+        "608#0300FFFF0000");
+  CHECK(frame_of(R"({"id":"208","topic":"gyro","priority":"medium","frame":"request","data":"01F40100"})") ==
+        "208#01F40100");
+  // Of no topic there is nothing that could contradict.
+  CHECK(frame_of(R"({"id":"4FF","priority":"low","frame":"x","data":"11"})") == "4FF#11");
+  const auto contradiction = [](std::string_view id, std::string_view key, std::string_view text) {
+    CHECK(frame_of(fmt::format(R"({{"id":"{}","{}":"{}","data":"01"}})", id, key, text)) ==
+          fmt::format("id {} and {} \"{}\" contradict each other; leave one of them out: jq 'del(.id)' makes "
+                      "the id from topic, frame and priority",
+                      id, key, text));
+  };
+  contradiction("608", "topic", "accel");
+  contradiction("208", "topic", "accel");
+  contradiction("608", "topic", "no such topic");
+  contradiction("4FF", "topic", "gyro");
+  contradiction("608", "priority", "urgent");
+  contradiction("208", "priority", "low");
+  contradiction("608", "frame", "request");
+  contradiction("208", "frame", "gyroscope");
+}
+
+TEST_CASE("JSON lines: the largest identifiers, and what is none", "[output]") {
+  CHECK(frame_of(R"({"id":"7FF","data":""})") == "7FF#");
+  CHECK(frame_of(R"({"id":"1FFFFFFF","data":""})") == "1FFFFFFF#");
+  for (const std::string_view id : {"800", "FFF", "40000000", "FFFFFFFF"})
+    CHECK(frame_of(fmt::format(R"({{"id":"{}","data":""}})", id)) ==
+          fmt::format("id \"{}\" is too large; 7FF is the largest of three digits, 1FFFFFFF of eight", id));
+  for (const std::string_view id :
+       {"\"\"", "\"60\"", "\"0608\"", "\"0000608\"", "\"000000608\"", "\"60G\"", "608"})
+    CHECK(
+        has(frame_of(fmt::format(R"({{"id":{},"data":""}})", id)),
+            "is not an identifier; expected three hexadecimal digits, or eight for an extended identifier"));
+}
+
+TEST_CASE("JSON lines: a topic without an identifier says which frame, and with which priority", "[output]") {
+  CHECK(frame_of(R"({"topic":"magnetometer","fields":{}})") ==
+        "magnetometer has several frames; frame is one of: x, y, z");
+  CHECK(frame_of(R"({"topic":"mag","frame":"w","fields":{}})") ==
+        "magnetometer has no frame \"w\"; frame is one of: x, y, z");
+  CHECK(frame_of(R"({"topic":"motors","frame":"request","fields":{}})") ==
+        "motors has no frame \"request\"; frame is one of: motors");
+  CHECK(frame_of(R"({"topic":"motors","priority":"first","fields":{}})") ==
+        "no priority \"first\"; one of: urgent, high, medium, low");
+  CHECK(frame_of(R"({"topic":"motors"})") == "no data; expected data, or fields of a topic");
+  CHECK(frame_of(R"({"data":""})") == "neither id nor topic; give one of them");
+  CHECK(frame_of(R"({"topic":"gyro","frame":"request","priority":"urgent","fields":{"mode":"once"}})") ==
+        "008#02");
+}
+
+TEST_CASE("JSON lines: a remote frame asks for up to eight bytes, and has no fields", "[output]") {
+  CHECK(frame_of(R"({"id":"608","data":"R","fields":{}})") == "608#R");
+  CHECK(frame_of(R"({"id":"608","data":"R1"})") == "608#R1");
+  CHECK(frame_of(R"({"id":"608","data":"R8"})") == "608#R8");
+  CHECK(frame_of(R"({"id":"608","data":"R","fields":{"x":1}})") ==
+        "fields, but id 608 is of no topic; leave them out, or name the robot's topics with --spec");
+  CHECK(frame_of(R"({"id":"608","data":"R9"})") ==
+        "data \"R9\" is no remote frame's; expected R or R0 to R8, with neither fd nor an error frame's id");
+}
+
+TEST_CASE("JSON lines: flags of CAN FD are those that are given", "[output]") {
+  JsonLineParser parser{amiro::catalogue};
+  const auto flags = [&parser](std::string_view fd) {
+    log::Entry entry;
+    std::string_view bus;
+    REQUIRE(parser.parse(fmt::format(R"({{"id":"123",{}"data":"11"}})", fd), entry, bus));
+    return int{entry.flags};
+  };
+  CHECK(flags(R"("fd":{"brs":true,"esi":true},)") ==
+        (log::flag::fd | log::flag::bit_rate_switch | log::flag::error_state));
+  CHECK(flags(R"("fd":{},)") == log::flag::fd);
+  CHECK(flags(R"("fd":{"brs":true},)") == (log::flag::fd | log::flag::bit_rate_switch));
+  CHECK(flags(R"("fd":{"esi":true,"brs":false},)") == (log::flag::fd | log::flag::error_state));
+  CHECK(flags("") == 0);
+  for (const std::string_view line :
+       {R"({"id":"123","fd":{5},"data":"11"})", R"({"id":"123","fd":{"brs":true},)",
+        R"({"id":"123","fd":{"brs":true "data":"11"}})", R"({"id":"123","fields":{"x"},"data":"11"})",
+        R"({"id":"123","fields":{"x":1 "y":2},"data":"11"})", R"({"id":"123","fields":{"x":1,"data":"11"})"})
+    CHECK(has(frame_of(line), "no JSON object in one line"));
+  CHECK(frame_of(R"({"id":"123","fd":{"brs":1},"data":"11"})") ==
+        R"("fd" has no flags; write "fd":{"brs":true,"esi":false}, or leave it out for a classic frame)");
+  CHECK(frame_of(R"({"id":"123","fields":[],"data":"11"})") ==
+        R"("fields" is no object; write "fields":{"x":0.1}, or leave it out)");
+}
+
+TEST_CASE("JSON lines: a line has nothing of the one before but its time", "[output]") {
+  JsonLineParser parser{amiro::catalogue};
+  log::Entry entry;
+  std::string_view bus;
+  REQUIRE(parser.parse(gyroscope, entry, bus));
+  CHECK(bus == "can0");
+  REQUIRE(parser.parse(R"({"id":"123","data":"1122"})", entry, bus));
+  CHECK(entry == entry_of("123#1122"));
+  CHECK(bus.empty());
+  REQUIRE(
+      parser.parse(R"({"id":"4FF","direction":"sent","raw_dlc":9,"data":"0011223344556677"})", entry, bus));
+  CHECK(entry.direction == log::Direction::sent);
+  CHECK(int{entry.raw_dlc} == 9);
+  REQUIRE(parser.parse(R"({"id":"4FF","direction":"received","data":"0011223344556677"})", entry, bus));
+  CHECK(entry.direction == log::Direction::received);
+  CHECK(int{entry.raw_dlc} == 0);
+  REQUIRE(parser.parse(R"({"id":"4FF","data":"0011223344556677"})", entry, bus));
+  CHECK(entry == entry_of("4FF#0011223344556677"));
+}
+
+TEST_CASE(
+    "JSON lines: a key that is not read is counted once a line, and nothing else is other than without it",
+    "[output]") {
+  JsonLineParser parser{amiro::catalogue};
+  log::Entry entry;
+  std::string_view bus;
+  const std::string line = replaced(gyroscope, "{", R"({"note":1,"note":2,)");
+  for (int i = 0; i < 3; ++i) {
+    INFO(parser.problem().what);
+    CHECK(parser.parse(line, entry, bus));
+  }
+  REQUIRE(parser.unknown_keys().size() == 1);
+  CHECK(parser.unknown_keys()[0].name == "note");
+  CHECK(parser.unknown_keys()[0].lines == 3);
+  // What decode prints for people is none, and what is in "fd" may be one.
+  CHECK(parser.parse(R"({"id":"123","data":"","units":0,"names":0,"error":0,"pgn":0,"source":0,)"
+                     R"("destination":0,"transport":0,"message":0})",
+                     entry, bus));
+  CHECK(parser.unknown_keys().size() == 1);
+  CHECK(parser.parse(R"({"id":"123","data":"","fd":{"who":true,"brs":true}})", entry, bus));
+  REQUIRE(parser.unknown_keys().size() == 2);
+  CHECK(parser.unknown_keys()[1].name == "who");
+  CHECK(parser.unknown_keys()[1].lines == 1);
+  CHECK(JsonLineParser::meant_by("time") == "time_ns");
+  CHECK(JsonLineParser::meant_by("topics") == "topic");
+  CHECK(JsonLineParser::meant_by("who").empty());
+}
+
+TEST_CASE("JSON lines: of keys that are not read the first 64 are known by name, and others are counted",
+          "[output]") {
+  std::string line = R"({"id":"123","data":"")";
+  for (int i = 0; i < 66; ++i) line += fmt::format(R"(,"k{}":{})", i, i);
+  line += '}';
+  JsonLineParser parser{amiro::catalogue};
+  log::Entry entry;
+  std::string_view bus;
+  for (std::uint64_t lines = 1; lines <= 2; ++lines) {
+    REQUIRE(parser.parse(line, entry, bus));
+    REQUIRE(parser.unknown_keys().size() == 64);
+    CHECK(parser.unknown_keys().back().name == "k63");
+    CHECK(parser.unknown_keys().back().lines == lines);
+    CHECK(parser.more_unknown_keys() == 2 * lines);
+  }
+}
+
+TEST_CASE("JSON lines: what a request's data says already stays, and else its fields count", "[output]") {
+  const auto request = [](std::string_view fields, std::string_view data) {
+    return frame_of(fmt::format(R"({{"id":"208","fields":{{{}}},"data":"{}"}})", fields, data));
+  };
+  CHECK(request(R"("mode":"publish","period":0.05)", "01") == "208#01");  // the gyroscope's own
+  CHECK(request(R"("mode":"publish")", "01F40100") == "208#01F40100");
+  CHECK(request(R"("mode":"publish","period":0.5)", "01") == "208#01F40100");
+  CHECK(request(R"("mode":"stop","period":0.5)", "01F40100") == "208#00");
+  CHECK(request(R"("mode":"stop","period":0.5)", "00") == "208#00");
+  CHECK(request(R"("mode":"publish")", "00") == "208#01");
+  const auto made = [](std::string_view fields) {
+    return frame_of(fmt::format(R"({{"topic":"gyro","frame":"request","fields":{{{}}}}})", fields));
+  };
+  CHECK(made(R"("mode":"publish","period":65535)") == "208#01FFFF01");
+  for (const std::string_view period : {"65536", "1e-7"})
+    CHECK(made(fmt::format(R"("mode":"publish","period":{})", period)) ==
+          fmt::format("period \"{}\" is none that a request has; write seconds or a time with its unit, such "
+                      "as 0.5 or \"500ms\": 1 to 65535 us, ms or s",
+                      period));
+  for (const std::string_view mode : {"once", "stop"})
+    CHECK(made(fmt::format(R"("mode":"{}","period":1)", mode)) ==
+          fmt::format("a period with mode {}; only publish has one; leave it out", mode));
+  CHECK(made(R"("mode":"dance")") == R"(mode "dance"; one of: stop, publish, once)");
+  CHECK(made(R"("period":1)") == R"(mode ""; one of: stop, publish, once)");
+  CHECK(made(R"("mode":"stop","x":1)") == R"(no field "x"; a request has mode and period)");
+  CHECK(made(R"("mode":null)") == R"(field "mode" has no value; one of: stop, publish, once)");
+  CHECK(made(R"("mode":"publish","period":null)") ==
+        R"(field "period" has no value; write seconds, or a time such as "500ms")");
+}
+
+TEST_CASE("JSON lines: what is derived is what the data or the edited field says, or is refused",
+          "[output]") {
+  // Sensor 4 sees 377 counts above its offset, 2350, and so something 50 mm away; sensor 1 nothing.
+  const auto ring = [](std::string_view fields) {
+    return frame_of(fmt::format(R"({{"id":"622","data":"A70A","fields":{{{}}}}})", fields));
+  };
+  const auto refused = [](std::string_view name) {
+    return fmt::format(
+        "\"{}\" is not what proximity says, of which it is derived; edit proximity, and leave {} out", name,
+        name);
+  };
+  CHECK(ring(R"("proximity":2727,"distance":0.05001,"distance_uncertainty":0.0003)") == "622#A70A");
+  CHECK(ring(R"("distance":0.05001,"proximity":2726)") == "622#A60A");
+  CHECK(ring(R"("distance":0.04)") == refused("distance"));
+  CHECK(ring(R"("distance_uncertainty":0.05001)") == refused("distance_uncertainty"));
+  CHECK(ring(R"("proximity":2726,"distance":0.04)") == refused("distance"));
+  CHECK(ring(R"("distance":"near")") == refused("distance"));
+  CHECK(frame_of(R"({"id":"61F","data":"F108","fields":{"proximity":2289,"distance":1}})") ==
+        refused("distance"));
+  // Without data it is what the frame says now.
+  CHECK(frame_of(R"({"topic":"ring","frame":"sensor_4","fields":{"distance":0.05001,"proximity":2727}})") ==
+        "622#A70A");
+  CHECK(frame_of(R"({"topic":"ring","frame":"sensor_4","fields":{"distance":0.05}})") == refused("distance"));
+}
+
+TEST_CASE("JSON lines: a value that is none says what the field takes, and what else can be done",
+          "[output]") {
+  CHECK(frame_of(R"({"topic":"motors","fields":{"x":5}})") ==
+        "'5' is out of range: x takes -1 to 1 m/s; write a value in its range");
+  CHECK(frame_of(R"({"id":"201","data":"0000000000000000","fields":{"x":5}})") ==
+        "'5' is out of range: x takes -1 to 1 m/s; leave the field out, and data counts");
+  CHECK(frame_of(R"({"topic":"motors","fields":{"x":true}})") ==
+        "field \"x\" has no value; x takes -1 to 1 m/s; write a number or a string");
+}
+
+/// A message of a byte, of which 10 to 20 are stated, and one without fields.
+struct Stated {
+  explicit Stated(std::uint16_t length = 1, bool fd = false, bool bit_rate_switch = true) {
+    level.name = "level";
+    level.position = {0, 8, protocol::ByteOrder::little};
+    level.raw_max = 255;
+    level.min = {10, 0};
+    level.max = {20, 0};
+    layouts[0].length = length;
+    layouts[0].fields = {&level, 1};
+    layouts[0].address = {protocol::Address::By::identifier, fd, fd ? 0x12345678U : 0x123U};
+    layouts[0].fd = fd;
+    layouts[0].bit_rate_switch = bit_rate_switch;
+    layouts[1].address = {protocol::Address::By::identifier, false, 0x124};
+    for (std::size_t i = 0; i < topics.size(); ++i) {
+      topics[i].name = i == 0 ? "M" : "Empty";
+      topics[i].kind = protocol::Kind::message;
+      topics[i].frames = {&layouts[i], 1};
+    }
+    catalogue.topics = topics;
+  }
+  Stated(const Stated&) = delete;
+  Stated& operator=(const Stated&) = delete;
+  [[nodiscard]] std::string frame(std::string_view line, cli::logs::Values values) const {
+    JsonLineParser parser{catalogue, values};
+    log::Entry entry;
+    std::string_view bus;
+    if (!parser.parse(line, entry, bus)) return parser.problem().what + "; " + parser.problem().remedy;
+    return std::string{can::to_text(entry.classic().value()).view()};
+  }
+
+  protocol::Field level;
+  std::array<protocol::FrameLayout, 2> layouts;
+  std::array<protocol::Topic, 2> topics;
+  protocol::Catalogue catalogue;
+};
+
+TEST_CASE("JSON lines: a value beyond the stated range is refused to who asks for that, if it was edited",
+          "[output]") {
+  using cli::logs::Values;
+  const Stated spec;
+  const auto beyond = [](std::string_view value) {
+    return fmt::format(
+        "'{}' is beyond the stated range: level takes 10 to 20; many stated ranges are wrong: "
+        "--force takes what the bits can hold",
+        value);
+  };
+  const auto made = [&spec](int level, Values values) {
+    return spec.frame(fmt::format(R"({{"topic":"M","fields":{{"level":{}}}}})", level), values);
+  };
+  CHECK(made(10, Values::as_stated) == "123#0A");
+  CHECK(made(20, Values::as_stated) == "123#14");
+  CHECK(made(9, Values::as_stated) == beyond("9"));
+  CHECK(made(21, Values::as_stated) == beyond("21"));
+  CHECK(made(21, Values::of_bits) == "123#15");
+  const auto edited = [&spec](std::string_view level) {
+    return spec.frame(fmt::format(R"({{"id":"123","data":"FF","fields":{{"level":{}}}}})", level),
+                      Values::as_stated);
+  };
+  CHECK(edited("255") == "123#FF");
+  CHECK(edited("2.55e2") == "123#FF");
+  CHECK(edited("20") == "123#14");
+  CHECK(edited("254") == beyond("254"));
+}
+
+TEST_CASE("JSON lines: a message by its name, with the frame that it has", "[output]") {
+  using cli::logs::Values;
+  const Stated spec;
+  CHECK(spec.frame(R"({"topic":"M","frame":"M","fields":{"level":12}})", Values::of_bits) == "123#0C");
+  CHECK(spec.frame(R"({"topic":"M","frame":"N","fields":{}})", Values::of_bits) ==
+        R"(M has no frame "N"; frame is M)");
+  CHECK(spec.frame(R"({"topic":"Empty","fields":{}})", Values::of_bits) == "124#");
+  CHECK(spec.frame(R"({"topic":"Empty","fields":{"a":1}})", Values::of_bits) ==
+        R"(no field "a"; the frame has none)");
+  for (const bool bit_rate_switch : {false, true})
+    for (const auto& [length, bytes] : {std::pair{1, 1}, {8, 8}, {9, 12}, {33, 48}}) {
+      CAPTURE(bit_rate_switch, length);
+      const Stated wide{static_cast<std::uint16_t>(length), true, bit_rate_switch};
+      JsonLineParser parser{wide.catalogue};
+      log::Entry entry;
+      std::string_view bus;
+      REQUIRE(parser.parse(R"({"topic":"M","fields":{"level":12}})", entry, bus));
+      CHECK(entry.id == 0x12345678);
+      CHECK(entry.format == can::Format::extended);
+      CHECK(int{entry.length} == bytes);
+      CHECK(int{entry.flags} == (log::flag::fd | (bit_rate_switch ? log::flag::bit_rate_switch : 0)));
+    }
+}
+
+TEST_CASE("JSON lines: a file is one if its first line is an object with a key that decode prints",
+          "[output]") {
+  for (const std::string_view file : {R"({"id":"123"})", R"({"fields":{}})", R"({"data":""})",
+                                      " \t\r\n{\"time_ns\":5,\"data\":\"\"}\n{", R"({ "id" )"})
+    CHECK(JsonLinesReader::recognises(file));
+  for (const std::string_view file : {"", " \n", R"(["id"])", R"("id")", R"({"time_ns":5})", R"({"ids":5})",
+                                      "{\"time_ns\":5}\n{\"id\":\"123\"}"})
+    CHECK_FALSE(JsonLinesReader::recognises(file));
 }
 
 }  // namespace tool_output_json_lines_test

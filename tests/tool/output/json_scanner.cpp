@@ -24,6 +24,17 @@ TEST_CASE("JSON strings: each escape", "[output]") {  // [RFC 8259, 7]
   for (const std::string_view wrong :
        {R"(\)", R"(\a)", R"(\u)", R"(\u12)", R"(\u123)", R"(\u12g4)", R"(\x41)"})
     CHECK(text_of(wrong) == "(none)");
+  // Whatever stands behind it.
+  CHECK(text_of(std::string_view{R"(\n)"}.substr(0, 1)) == "(none)");
+  CHECK(text_of(std::string_view{R"(\u0041)"}.substr(0, 5)) == "(none)");
+}
+
+TEST_CASE("JSON strings: the text is that of this string alone", "[output]") {
+  std::string out = "before";
+  CHECK(unescape("a", out));
+  CHECK(out == "a");
+  CHECK(unescape("", out));
+  CHECK(out.empty());
 }
 
 TEST_CASE("JSON strings: the first and last code of each length of UTF-8", "[output]") {  // [RFC 3629, 3]
@@ -76,6 +87,36 @@ TEST_CASE("JSON lines: a string has no control characters, and blanks are three"
     const std::string before = static_cast<char>(c) + std::string{"1"};
     JsonScanner blank{before};
     CHECK(blank.take('1') == (c == ' ' || c == '\t' || c == '\r' || c == '1'));
+  }
+}
+
+TEST_CASE(
+    "JSON lines: a number ends where no more of it comes, and what is neither it nor a string has no text",
+    "[output]") {
+  for (const std::string number : {"0", "-1", "1.5", "2e3", "2E+3", "-0.5e-7"}) {
+    CAPTURE(number);
+    const std::string text = number + " ,7";
+    JsonScanner scanner{text};
+    JsonValue value;
+    REQUIRE(scanner.take_value(value));
+    CHECK(value.text == number);
+    CHECK_FALSE(value.is_string);
+    CHECK_FALSE(value.escaped);
+    CHECK(scanner.take(','));
+  }
+  for (const std::string_view word : {"true", "false", "null", "[1]", "{\"a\":1}"}) {
+    CAPTURE(word);
+    JsonScanner scanner{word};
+    JsonValue value{"before", true, true};
+    CHECK(scanner.take_value(value));
+    CHECK_FALSE(value);
+    CHECK(scanner.at_end());
+  }
+  for (const std::string_view word : {"True", "nul", "+1", ".5", "a"}) {
+    CAPTURE(word);
+    JsonScanner scanner{word};
+    JsonValue value;
+    CHECK_FALSE(scanner.take_value(value));
   }
 }
 

@@ -9,7 +9,10 @@
 #include <fcntl.h>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <memory>
+#include <new>
+#include <span>
 #include <sstream>
 #include <string>
 #include <string_view>
@@ -291,6 +294,123 @@ TEST_CASE("log file: whether the disk has room is asked, and none is taken") {
   CHECK(file->has_room());
   CHECK(blocks() - before < 256);  // of 512 bytes, and it was asked for 256 KiB
   CHECK(file->finish());
+  CHECK(content(path) == one_line);
+}
+
+/// A writer whose memory may run out in the middle of what it appends.
+class Hungry final : public log::Writer {
+ public:
+  static inline bool has_memory = true;
+  void write(log::Bytes& out, std::span<const log::Entry>, const log::Interfaces&) override {
+    append(out, "written\n");
+  }
+  void flush(log::Bytes& out) override { append(out, "flushed\n"); }
+  void recorded(log::Bytes& out, std::span<const log::Recorded>) override { append(out, "recorded\n"); }
+  void finish(log::Bytes& out) override { append(out, "finished\n"); }
+
+ private:
+  static void append(log::Bytes& out, std::string_view text) {
+    out.append(text.substr(0, 3));
+    if (!has_memory) throw std::bad_alloc{};
+    out.append(text.substr(3));
+  }
+};
+
+std::unique_ptr<log::Writer> make_hungry(const protocol::Catalogue&) {
+  return std::make_unique<Hungry>();
+}
+
+TEST_CASE("log file: where memory runs out, what was whole before is written, and no more is taken") {
+  const Folder folder;
+  const std::string path = folder.file("a.hungry");
+  const cli::logs::LogFormat format{"hungry", ".hungry", "", nullptr, nullptr, make_hungry};
+  const log::Interfaces interfaces{};
+  const auto fresh = [&] {
+    auto made = LogFile::create(path, format, amiro::catalogue, Existing::overwrite);
+    REQUIRE(made);
+    return std::move(*made);
+  };
+  const std::function<bool(LogFile&)> writes = [&](LogFile& file) { return file.write({}, interfaces); };
+  const std::function<bool(LogFile&)> records = [](LogFile& file) { return file.recorded({}); };
+  const std::function<bool(LogFile&)> flushes = [](LogFile& file) { return file.flush(); };
+  for (const auto& act : {writes, records, flushes}) {
+    const auto file = fresh();
+    CHECK(writes(*file));
+    Hungry::has_memory = false;
+    CHECK_THROWS_AS(act(*file), std::bad_alloc);
+    Hungry::has_memory = true;
+    for (const auto& later : {writes, records, flushes}) CHECK_THROWS_AS(later(*file), std::bad_alloc);
+    CHECK(file->finish());
+    CHECK(content(path) == "written\n");
+  }
+  {
+    const auto file = fresh();
+    CHECK(writes(*file));
+    CHECK(records(*file));
+    CHECK(flushes(*file));
+    CHECK(content(path) == "written\nrecorded\nflushed\n");
+    CHECK(file->finish());
+  }
+  CHECK(content(path) == "written\nrecorded\nflushed\nfinished\n");
+}
+
+TEST_CASE("log file: what another program has cut off stays so where nothing more is taken") {
+  const Folder folder;
+  const std::string path = folder.file("a.log");
+  const auto file = created(path);
+  CHECK(write(*file));
+  CHECK(file->flush());
+  fs::resize_file(path, 3);
+  bool taken = true;
+  {
+    const Limited limited{one_line.size()};
+    taken = write(*file) && file->flush();
+  }
+  CHECK_FALSE(taken);
+  CHECK(content(path) == one_line.substr(0, 3));
+  CHECK_FALSE(file->finish());
+}
+
+TEST_CASE(
+    "log file: of a longer file that it takes the place of nothing is left, and what it wrote itself stays") {
+  const Folder folder;
+  const std::string path = folder.file("a.log"), old(1000, 'x');
+  std::ofstream{path} << old;
+  const auto file = created(path, Existing::overwrite);
+  CHECK(write(*file));
+  CHECK(content(path) == old);
+  CHECK(file->flush());
+  CHECK(content(path) == one_line);
+  CHECK(write(*file));
+  CHECK(file->finish());
+  CHECK(content(path) == std::string{one_line} + std::string{one_line});
+  CHECK(file->size() == 2 * one_line.size());
+}
+
+TEST_CASE("log file: what cannot be made is refused, and nothing is made behind a link") {
+  const Folder folder;
+  const auto refused = [](const std::string& path, std::string_view format, Existing existing) {
+    const auto made = LogFile::create(path, *cli::logs::find_format(format), amiro::catalogue, existing);
+    REQUIRE_FALSE(made);
+    return made.error.what + "; " + made.error.remedy;
+  };
+  const std::string path = folder.file("a.log"), nowhere = folder.file("none/a.log"),
+                    link = folder.file("link.log");
+  CHECK(refused(path, "blf", Existing::refuse) == "blf is read only; --to names another format");
+  CHECK_FALSE(fs::exists(path));
+  CHECK(refused(nowhere, "candump", Existing::overwrite) ==
+        "cannot write " + nowhere +
+            ": No such file or directory; name a folder that exists and can be written to");
+  fs::create_symlink(path, link);
+  CHECK(refused(link, "candump", Existing::refuse) ==
+        "cannot write " + link +
+            ": No such file or directory; name a folder that exists and can be written to");
+  CHECK_FALSE(fs::exists(path));
+  {
+    const auto file = created(link, Existing::overwrite);
+    CHECK(write(*file));
+    CHECK(file->finish());
+  }
   CHECK(content(path) == one_line);
 }
 
