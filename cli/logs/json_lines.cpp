@@ -158,7 +158,6 @@ std::string_view JsonLineParser::meant_by(std::string_view unknown) {
 
 bool JsonLineParser::scan_fields(JsonScanner& scanner) {
   record_.has_fields = true;
-  record_.field_count = 0;
   if (!scanner.take('{'))
     return refuse(log::Cause::syntax, "\"fields\" is no object",
                   R"(write "fields":{"x":0.1}, or leave it out)");

@@ -259,8 +259,8 @@ bool LogFile::flush(bool to_disk) {
 
 bool LogFile::finish() {
   if (state_->finished) return state_->failure.what.empty();
-  state_->finished = true;
   if (!state_->broken) state_->whole([&] { state_->writer->finish(state_->bytes); });
+  state_->finished = true;  // without memory for its end it is not: what came before is written next time
   bool done = state_->empty_out(Packer::Until::ended);
   if (state_->path != "-" && ::close(state_->descriptor) != 0 && done) done = state_->failed("write");
   if (!done) state_->delete_empty();

@@ -333,7 +333,8 @@ TEST_CASE("log file: where memory runs out, what was whole before is written, an
   const std::function<bool(LogFile&)> writes = [&](LogFile& file) { return file.write({}, interfaces); };
   const std::function<bool(LogFile&)> records = [](LogFile& file) { return file.recorded({}); };
   const std::function<bool(LogFile&)> flushes = [](LogFile& file) { return file.flush(); };
-  for (const auto& act : {writes, records, flushes}) {
+  const std::function<bool(LogFile&)> finishes = [](LogFile& file) { return file.finish(); };
+  for (const auto& act : {writes, records, flushes, finishes}) {
     const auto file = fresh();
     CHECK(writes(*file));
     Hungry::has_memory = false;
