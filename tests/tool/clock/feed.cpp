@@ -242,4 +242,22 @@ TEST_CASE("frame clock: the wall clock, unless it was set and the frames do not 
   CHECK(is_about(clock.now(), begin - 1h + 3500ms));
 }
 
+TEST_CASE("frame clock: a frame waits less than a second, or its clock is another one") {
+  World world{1};
+  cli::FrameClock clock;
+  const Moment begin = world.now();
+  static_cast<void>(cli::Clock::now());
+  const Duration a_look = world.now() - begin;
+  // How late the wall clock is by that of a frame that has such a time when it is taken.
+  const auto apart = [&](Duration behind) {
+    clock.take(world.wall_at(world.now() + a_look) - behind);
+    const base::Time now = clock.now();
+    return Duration{cli::unix_time() - now};
+  };
+  CHECK(apart(1s - 1ns) == 0ns);
+  CHECK(apart(1s) == 1s);
+  CHECK(apart(-1s + 1ns) == 0ns);
+  CHECK(apart(-1s) == -1s);
+}
+
 }  // namespace tool_clock_feed_test

@@ -69,6 +69,53 @@ TEST_CASE("live: what is beside does not wait behind a bus that always has a fra
   }
 }
 
+TEST_CASE("live: all frames that came before it are taken first, however many they are, and each time") {
+  World world{1};
+  const Moment first = World::start + 50ms, second = World::start + 150ms;
+  std::vector<Moment> times;
+  // The program does not run while they come, and then what is beside.
+  for (const Moment begin : {first, second}) {
+    world.stop(begin - 1ms, 20ms);
+    for (int i = 0; i < 20; ++i) times.push_back(begin);
+  }
+  PlayedBus bus{world, frames_at(times)};
+  Moment ready = first + 3ms;
+  world.inputs[beside] = [&] { return ready; };
+  std::size_t taken = 0;
+  std::vector<std::size_t> taken_before;
+  cli::Live live{bus, [] {}, {beside, [&] {
+                                taken_before.push_back(taken);
+                                ready = taken_before.size() == 1 ? second + 3ms : Moment::max();
+                              }}};
+  const auto over = live.receive(World::start + 1s, [&](const can::Received&) {
+    world.pass(100us);
+    ++taken;
+    return true;
+  });
+  CHECK(over == cli::Over::time);
+  CHECK(taken_before == std::vector<std::size_t>{20, 40});
+}
+
+TEST_CASE("live: beside a bus that always has a frame it is served in every second look, each 10 ms") {
+  World world{1};
+  std::vector<Moment> times;
+  for (int i = 0; i < 10'000; ++i) times.push_back(World::start + i * 100us);
+  PlayedBus bus{world, frames_at(times)};
+  world.inputs[beside] = [] { return World::start; };  // it always has something, too
+  std::vector<Moment> served;
+  cli::Live live{bus, [] {}, {beside, [&] { served.push_back(world.now()); }}};
+  const auto over = live.receive(World::start + 1s, [&](const can::Received&) {
+    world.pass(150us);
+    return served.size() < 4;
+  });
+  CHECK(over == cli::Over::enough);
+  REQUIRE(served.size() == 4);
+  for (std::size_t i = 1; i < served.size(); ++i) {
+    CHECK(served[i] - served[i - 1] >= 20ms);
+    CHECK(served[i] - served[i - 1] <= 21ms);
+  }
+}
+
 TEST_CASE("live: on a silent bus it looks for a signal five times a second, and no more often") {
   World world{1};
   PlayedBus bus{world, {}};

@@ -91,9 +91,9 @@ TEST_CASE("remedies: of each reason for which a board refuses") {
 TEST_CASE("remedies: each counter is a finding of its own, and zero is none") {
   CHECK(cli::findings_of({.sent = 1, .received = 2, .refused = 3}, {.frames = 4, .samples = 5, .commands = 6})
             .empty());
-  const auto all =
-      cli::findings_of({.lost = 1, .error_frames = 2}, {.unknown = 1, .wrong_dlc = 4, .incomplete = 5});
-  REQUIRE(all.size() == 5);
+  const auto all = cli::findings_of({.lost = 1, .error_frames = 2},
+                                    {.unknown = 1, .remote = 3, .wrong_dlc = 4, .incomplete = 5});
+  REQUIRE(all.size() == 6);
   for (const auto& finding : all) {
     CHECK(finding.severity == client::Severity::warning);
     CHECK(finding.board.empty());
@@ -105,10 +105,12 @@ TEST_CASE("remedies: each counter is a finding of its own, and zero is none") {
   CHECK(all[2].what == "1 frame that the spec does not know");
   CHECK(all[2].remedy ==
         "another program or robot on the bus, or another spec: `amiroctl listen` shows them");
-  CHECK(all[3].what == "4 frames of a wrong length");
-  CHECK(all[3].remedy == "a board or a program with another spec");
-  CHECK(all[4].what == "5 incomplete samples");
-  CHECK(all[4].remedy ==
+  CHECK(all[3].what == "3 remote frames");
+  CHECK(all[3].remedy == "the protocol has none: another program or robot on the bus");
+  CHECK(all[4].what == "4 frames of a wrong length");
+  CHECK(all[4].remedy == "a board or a program with another spec");
+  CHECK(all[5].what == "5 incomplete samples");
+  CHECK(all[5].remedy ==
         "frames are lost, or a stream is so fast that its samples mix: `amiroctl stats` shows which");
 }
 

@@ -29,6 +29,8 @@ TEST_CASE("a line is broken at blanks, and only where it does not fit", "[foldin
   CHECK(folded("in 12345678901234567890 s", 20, 4) == "in\n12345678901234567890\n    s");
   CHECK(folded("in 123456789012345678901 s", 20, 4) == "in\n123456789012345678901\n    s");
   CHECK(folded("publish|once|stop|drive|set", 20, 4) == "publish|once|stop|\n    drive|set");
+  CHECK(folded("12345678 publish|onceabc", 20, 4) == "12345678\n    publish|onceabc");  // it just fits a line
+  CHECK(folded("12345678 publish|onceabcd", 20, 4) == "12345678 publish|\n    onceabcd");
   CHECK(folded("one two", 3, 4) == "one\ntwo");
   CHECK(folded("", 0, 0) == "");
   CHECK(folded("a", 0, 0) == "a");
@@ -69,6 +71,12 @@ TEST_CASE("a help's description goes below where beside it there are fewer than 
         "                              the second line of an\n"
         "                              option of some verb");
   CHECK(folded_help(second, 53) == "      the second line of an option of some verb");
+  // Below a lead as wide as the column lines stay below each other; below a narrower one they are moved in.
+  const std::string words = "the second line of an option of some verb";
+  CHECK(folded_help(std::string(28, ' ') + words, 54) ==
+        std::string(28, ' ') + "the second line of an\n" + std::string(28, ' ') + "option of some verb");
+  CHECK(folded_help(std::string(27, ' ') + words, 54) ==
+        std::string(27, ' ') + "the second line of an\n" + std::string(29, ' ') + "option of some verb");
   // What is described is long itself, and without a lead.
   CHECK(folded_help("amiroctl publish TOPIC PERIOD  asks a board for a sensor's samples", 36) ==
         "amiroctl publish TOPIC PERIOD\n"
@@ -88,6 +96,10 @@ TEST_CASE("only an option that fills its column has one blank before its descrip
   CHECK(folded_help("  --spec FILE (AMIROCTL_SPE topics of another robot, as JSON", 54) ==
         "  --spec FILE (AMIROCTL_SPE topics of another robot,\n"
         "    as JSON");
+  // Nor is a description that ends with the column an option that fills it.
+  CHECK(folded_help("  --all  what it is for, a wo ", 28) ==
+        "  --all\n"
+        "      what it is for, a wo ");
   // One that is longer than its column has two.
   CHECK(folded_help("  --an-option-with-a-very-long-name  what it is for, said in some words", 60) ==
         "  --an-option-with-a-very-long-name\n"

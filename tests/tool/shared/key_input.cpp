@@ -150,6 +150,22 @@ TEST_CASE("key input: of many keys at once none is lost, and none is cut") {
   CHECK(came == all);
 }
 
+TEST_CASE("key input: what is kept has its room, and what is read behind it the rest") {
+  const PseudoTerminal terminal;
+  const AsInput input{terminal.descriptor()};
+  KeyInput keys;
+  const std::string key = "\x1b[" + std::string(12, '1') + "~";  // of 64 bytes four are the beginning of one
+  std::string all, came;
+  for (int i = 0; i < 20; ++i) all += key;
+  terminal.press(all);
+  for (int looks = 0; looks < 10 && came.size() < all.size(); ++looks) {
+    const std::string some = pressed(keys);
+    CHECK(some.size() % key.size() == 0);
+    came += some;
+  }
+  CHECK(came == all);
+}
+
 TEST_CASE("key input: a terminal that is gone is said") {
   PseudoTerminal terminal;
   const AsInput input{terminal.descriptor()};

@@ -148,6 +148,15 @@ TEST_CASE("local link: after a silence there is no other answer") {
   CHECK(server.end() == std::vector<std::string>{"hello 1 goto", "status"});
 }
 
+TEST_CASE("local link: an answer is waited for 300 ms where nothing else is said") {
+  const Folder folder;
+  PlayedServer server{folder.file("a.sock"), {"ok\nguard", ""}};
+  auto link = connected(folder.file("a.sock"));
+  const auto begin = std::chrono::steady_clock::now();
+  CHECK(link->ask("status").kind == LocalAnswer::Kind::silent);
+  CHECK(std::chrono::steady_clock::now() - begin >= 300ms);
+}
+
 TEST_CASE("local link: one that does not greet, or turns this program away") {
   const Folder folder;
   {
@@ -255,6 +264,8 @@ TEST_CASE("local server: who does not keep to the protocol is turned away, and c
   CHECK(bench.answer(*client).empty());
   CHECK(bench.server->turned_away() == ++away);
   CHECK(bench.done.back() == "gone " + verb.substr(0, 32));
+  client = bench.comes("hello 1 !~");  // the first and the last of what is printed
+  CHECK(bench.answer(*client) == "ok\nbench");
   // One that has left meanwhile: its request is out of date.
   client = bench.comes("hello 1 goto");
   CHECK(bench.answer(*client) == "ok\nbench");

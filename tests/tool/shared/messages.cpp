@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <fcntl.h>
 #include <string>
 #include <unistd.h>
@@ -85,6 +86,7 @@ class Pipe {
 
 TEST_CASE("messages: unhurried ones wait for no reader, and come in their order") {
   const Pipe pipe;
+  std::chrono::steady_clock::time_point too_late;
   {
     const UnhurriedMessages unhurried;
     remark("at once");
@@ -112,7 +114,9 @@ TEST_CASE("messages: unhurried ones wait for no reader, and come in their order"
     CHECK_THAT(all, Catch::EndsWith("one of many\nthe last\n3 messages lost: stderr took none\n"));
     pipe.fill();
     remark("too late");
+    too_late = std::chrono::steady_clock::now();
   }  // waits a second for a reader
+  CHECK(std::chrono::steady_clock::now() - too_late >= std::chrono::seconds{1});
   CHECK(pipe.read().empty());
   remark("as usual");
   CHECK(pipe.read() == "as usual\n");

@@ -103,6 +103,22 @@ TEST_CASE("motors: a spec without that sensor, or with another one of its name, 
   CHECK_FALSE(BehaviourSensor{without_end}.exists());
 }
 
+TEST_CASE("motors: zeros end a motion of theirs, or what a board does by itself, and no light") {
+  const auto ends = [](const char* name, std::int64_t first) {
+    const protocol::Topic& topic = *amiro::catalogue.find(name);
+    std::vector<std::int64_t> raw(topic.frames[0].fields.size(), 0);
+    raw[0] = first;
+    return ends_motion(topic, client::set_point(topic, raw));
+  };
+  for (const char* const name : {"motors", "travel"}) {
+    CAPTURE(name);
+    CHECK(ends(name, 0));
+    CHECK_FALSE(ends(name, 1));
+  }
+  CHECK_FALSE(ends("led_1", 0));
+  CHECK_FALSE(ends("led_1", 1));
+}
+
 TEST_CASE("motors: a rest of what no watchdog ends, such as a travel, is the end of one") {
   const auto ends = [](std::initializer_list<std::pair<const char*, std::int64_t>> set_points) {
     client::Command command;

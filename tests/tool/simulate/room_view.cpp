@@ -248,6 +248,34 @@ TEST_CASE("room view: what is in a world decides what there is room for") {
   CHECK(place_of(wall, "####") == std::pair{std::size_t{1}, std::size_t{0}});
 }
 
+TEST_CASE("room view: the room begins at its upper left edges, and ends before the others") {
+  // 54 columns and 21 lines are for it: one is 0.25 m wide and 0.5 m high.
+  sim::SeenWorld world{"edges", base::Time{}};
+  world.walls.push_back({{0, 0}, {0, 0}});
+  world.walls.push_back({{13.25, -1}, {13.25, -1}});
+  // Where a piece of a line is drawn that is no longer than a dot: "column,line".
+  const auto drawn_at = [&world](sim::Vector at) {
+    world.line.assign(1, sim::Segment{at, at});
+    const auto picture = draw_room(world, {}, {}, {80, 23}, false);
+    std::string places;
+    for (std::size_t row = 1; row + 1 < picture.size(); ++row) {
+      std::string text;
+      for (const top::Piece& piece : picture[row]) text += piece.text;
+      for (std::size_t i = 0; i < text.size(); ++i)
+        if (text[i] == ':') places += std::to_string(i) + ',' + std::to_string(row - 1);
+    }
+    return places;
+  };
+  CHECK(drawn_at({-0.125, -0.5}) == "0,1");
+  CHECK(drawn_at({-0.126, -0.5}).empty());
+  CHECK(drawn_at({13.374, -0.5}) == "53,1");
+  CHECK(drawn_at({13.375, -0.5}).empty());
+  CHECK(drawn_at({1, 0.25}) == "4,0");
+  CHECK(drawn_at({1, 0.251}).empty());
+  CHECK(drawn_at({1, -10.249}) == "4,20");
+  CHECK(drawn_at({1, -10.25}).empty());
+}
+
 TEST_CASE("room view: figures that no world has do no harm") {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   constexpr double endless = std::numeric_limits<double>::infinity();
@@ -258,7 +286,9 @@ TEST_CASE("room view: figures that no world has do no harm") {
     world.robots[0].beams[0].to = {odd, odd};
     CHECK(draw_room(world, {}, {}, {80, 24}, true).size() == 24);
   }
-  CHECK(draw_room({}, {}, {}, {80, 24}, true).size() == 24);
+  // Without a robot, wherever its state would be.
+  for (const TerminalSize size : {TerminalSize{80, 24}, TerminalSize{40, 24}, TerminalSize{80, 7}})
+    CHECK(draw_room({}, {}, {}, size, true).size() == size.rows);
   sim::SeenWorld open = two_mappers();  // without walls
   open.walls.clear();
   CHECK(text_of(draw_room(open, {}, {}, {80, 24}, true)).find("→1") != std::string::npos);

@@ -108,6 +108,7 @@ class Config(harness.Case):
     def test_mistakes_are_told_with_file_line_and_remedy(self):
         for text, line, what, remedy in (
                 ('bus = "sim"\nbuss = "sim"\n', 2, "unknown option 'buss'", "did you mean 'bus'?"),
+                ('priorty = "low"\n', 1, "unknown option 'priorty'", "did you mean 'priority'?"),  # of verbs only
                 ('[lissten]\npretty = true\n', 2, "[lissten]: unknown verb 'lissten'", "did you mean 'listen'?"),
                 ('[list]\nzzzzz = true\n', 2, "unknown option 'zzzzz'", "`amiroctl list --help` lists the options"),
                 ("\nbus = sim\n", 2, "could not determine value type", 'bus = "can0"'),

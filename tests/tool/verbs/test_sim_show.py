@@ -71,6 +71,16 @@ class Show(screens.Screens):
         self.press(80, "q")
         self.assertEqual(self.ended(80)[-1], "END 0")
 
+    def test_each_of_three_is_reached_in_both_directions(self):
+        self.open(80, "sim", "--world", "square", "--robots", "3", "--show=text", rows=24)
+        self.shows(80, "1 AVR  of 3")
+        for key, chosen in (("Tab", "2 robot_2"), ("Tab", "3 robot_3"), ("Tab", "1 AVR"), ("Up", "3 robot_3"),
+                            ("Left", "2 robot_2"), ("Up", "1 AVR")):
+            self.press(80, key)
+            self.shows(80, f"{chosen}  of 3")
+        self.press(80, "q")
+        self.assertEqual(self.ended(80)[-1], "END 0")
+
     def test_without_unicode(self):
         self.open(80, "--bus", self.socket(), "sim", "--frozen", "--show=text", rows=24, before="export LC_ALL=C NO_COLOR=1; ")
         lines = self.shows(80, "heading", "####")

@@ -118,6 +118,11 @@ TEST_CASE("floats and 64 bits without sign") {
   const auto bits = [](float value) { return std::int64_t{std::bit_cast<std::uint32_t>(value)}; };
   CHECK(holds(real, Comparison::greater, "1.25", bits(1.5F)));
   CHECK_FALSE(holds(real, Comparison::greater, "1.5", bits(1.5F)));
+  for (const auto comparison : {Comparison::equal, Comparison::at_most, Comparison::at_least})
+    CHECK(holds(real, comparison, "1.5", bits(1.5F)));
+  for (const auto comparison : {Comparison::different, Comparison::less})
+    CHECK_FALSE(holds(real, comparison, "1.5", bits(1.5F)));
+  CHECK(holds(real, Comparison::less, "1.5", bits(1.25F)));
   const auto nan = bits(std::numeric_limits<float>::quiet_NaN());
   for (const auto comparison :
        {Comparison::equal, Comparison::less, Comparison::at_most, Comparison::greater, Comparison::at_least})

@@ -208,6 +208,7 @@ TEST_CASE("fields that are never in one frame are refused at the word") {
       {"set Long a=1", 2, "Long has no field 'a'"},
       {"set Engine rpm=1 --priority high", 0, "a message carries its priority in its identifier"},
       {"publish Engine 1s", 1, "'Engine' is a message"},
+      {"stop Engine", 1, "'Engine' is a message"},
   });
   CHECK(parse("set Paged page=2 a=1").error.remedy == "give fields that are in one frame, or leave page out");
   CHECK(parse("set Paged a=1 inner=1").error.remedy ==
