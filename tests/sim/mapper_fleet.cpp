@@ -121,6 +121,25 @@ TEST_CASE("fleet: start, list, conn, confirm, a set point, updates and idle") {
   CHECK(server.fleet.radio().counters(0).to_central.lost == 0);
 }
 
+TEST_CASE("fleet: a calibration finds a robot's own field, and the earth's where there is a compass") {
+  World world{room({{"one", RobotKind::avr, {}}, {"two", RobotKind::avr, {0.5, 0, 0}}})};
+  plant::Robot& one = world.robot(0);
+  plant::calibrate(one);
+  REQUIRE(one.stored().ok());
+  CHECK(one.stored()->offset == one.own_field());
+  CHECK(one.stored()->field == Approx(0.14).margin(0.015));  // six times its noise
+  const sensing::CompassFit kept{{0.1F, 0.2F}, 0.3F, 0.4F};
+  one.store(kept);
+  plant::calibrate(one);  // its memory keeps one
+  CHECK(*one.stored() == kept);
+  plant::Robot& two = world.robot(1);
+  two.set_absent(plant::Part::compass, true);
+  plant::calibrate(two);
+  REQUIRE(two.stored().ok());
+  CHECK(two.stored()->offset == two.own_field());
+  CHECK(two.stored()->field == 0);
+}
+
 TEST_CASE("fleet: its radio is the world's, with a link for each robot") {
   WorldModel model = room({{"one", RobotKind::avr, {}},
                            {"two", RobotKind::avr, {0.5, 0, 0}},
@@ -274,6 +293,19 @@ TEST_CASE("fleet: a hundred robots, all with a link") {
   CHECK(server.fleet.central().links() == 100);
   server.run(2s);
   for (std::uint8_t i = 0; i < 100; ++i) CHECK(server.count(i, mapper::link::Kind::handshake) > 0);
+}
+
+TEST_CASE("fleet: of more than 128 robots the rest has no application") {
+  WorldModel model = room({{"AVR", RobotKind::avr, {}}}, 5);
+  const auto starts = plant::starts_for(model, 129);
+  REQUIRE(starts);
+  model.starts = *starts;
+  World world{model, {.seed = 1}};
+  const Fleet fleet{world, Fleet::options_for(world, 1)};
+  CHECK(world.size() == 129);
+  CHECK(fleet.size() == 128);
+  CHECK(world.robot(127).stored().ok());  // their compasses are calibrated with them
+  CHECK_FALSE(world.robot(128).stored().ok());
 }
 
 }  // namespace sim_mapper_fleet_test

@@ -106,6 +106,39 @@ TEST_CASE("mapper: wheels say 2.5 % too much of a straight way, and 10 % of a tu
   CHECK(turn.robot.turn_rad_per_s() == Approx(2 * 66 * 2 * pi * 0.033 / 198 / 0.15 / 1.10).epsilon(1e-3));
 }
 
+TEST_CASE("mapper: the wheels of the AVR robot say 10 % too much of a turn, the Arduino robot's 15 %") {
+  for (const auto& [of, turning] : {std::pair{&avr_model, 0.10}, {&arduino_model, 0.15}}) {
+    RobotModel model = *of;
+    model.motor.spread = 0;
+    model.slip.variation = 0;
+    model.wheel_errors = {0, 0};
+    Bench bench{model};
+    bench.robot.drive(turn_left);
+    bench.run(1);
+    const double by_wheels =
+        (bench.robot.right_m_per_s() - bench.robot.left_m_per_s()) / model.drive.wheelbase_m;
+    CHECK(by_wheels / bench.robot.turn_rad_per_s() == Approx(1 + turning).epsilon(1e-6));
+    CHECK(bench.robot.wheels_say_per_m() == Approx(1.025).epsilon(1e-6));
+  }
+}
+
+TEST_CASE("mapper: what its wheels say of a metre is what driving a measured way finds") {
+  for (const RobotModel& of : {avr_model, arduino_model}) {
+    RobotModel model = of;
+    model.motor.spread = 0;
+    model.slip.variation = 0;
+    model.wheel_errors.radius_spread = 0.05;
+    Bench bench{model};
+    bench.robot.drive(ahead);
+    bench.run(1);
+    const Vector before = bench.robot.pose().position();
+    bench.run(0.001);
+    const double way_m = length(bench.robot.pose().position() - before);
+    const double said_m = model.drive.m_per_tick() * bench.robot.left().ticks_per_s() * step_s;
+    CHECK(bench.robot.wheels_say_per_m() == Approx(said_m / way_m).epsilon(1e-4));
+  }
+}
+
 TEST_CASE("mapper: less friction is more slip") {
   RobotModel model = ideal();
   model.slip.turning = 0.10;

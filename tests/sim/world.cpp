@@ -135,12 +135,16 @@ TEST_CASE("a calibration takes what is seen for the offset, is forgotten, and ne
   World world{options};
   const auto seen = *world.floor();
   CHECK(seen[1] > 7000);
+  const auto raw = *world.raw_floor();
+  const boards::FloorCounts nothing_below{2310, 2294, 2351, 2278};
+  for (std::size_t i = 0; i < 4; ++i) CHECK(raw[i] - seen[i] == nothing_below[i]);
   REQUIRE(world.calibrate_floor(false).ok());
   CHECK(*world.floor() == boards::FloorCounts{});
   REQUIRE(world.calibrate_floor(true).ok());
   CHECK(world.floor() == world.raw_floor());
   const auto offset = world.ring_offset();
-  CHECK((offset[0] == 2289 && offset[7] == 2269 && world.ring_offset(7) == 2269));
+  CHECK(offset == boards::RingCounts{2289, 2302, 2420, 2350, 2318, 2272, 2382, 2269});
+  CHECK(world.ring_offset(7) == 2269);
   REQUIRE(world.calibrate_ring(true).ok());
   CHECK(world.ring_offset() == boards::RingCounts{});
   REQUIRE(world.calibrate_ring(false).ok());

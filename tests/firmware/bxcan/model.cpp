@@ -141,6 +141,11 @@ TEST_CASE("filters of all four kinds [RM0008 figure 231]") {
   only(1, 1, 0x123U << 21, 0x1ABC'DEF0U << 3 | 4);  // two identifiers of 32 bits
   CHECK((base(0x123) && !base(0x124)));
   CHECK(model.deliver({0x1ABC'DEF0, 0, {}, can::Format::extended}));
+  // The last bit of a filter of 32 bits is of no identifier, and does not count.
+  only(1, 1, 0x123U << 21 | 1, 0x125U << 21 | 1);
+  CHECK((base(0x123) && base(0x125) && !base(0x124)));
+  only(0, 1, 0x400U << 21 | 1, 0x700U << 21 | 1);
+  CHECK((base(0x400) && base(0x4FF) && !base(0x500)));
 }
 
 TEST_CASE("error counters, and bus-off with and without ABOM [RM0008 24.7.6]") {
@@ -181,7 +186,7 @@ TEST_CASE("registers as they are after a reset [RM0008 24.9.2, 24.9.4]") {
   model.write(Register::mcr, 0x1234'0004);  // out of sleep; what is reserved is not kept
   CHECK(model.read(Register::mcr) == 0x0'0004);
   CHECK(model.read(Register::msr) == 0xC00);
-  model.read(static_cast<Register>(0x400));
+  CHECK(model.read(static_cast<Register>(0x400)) == 0);
   CHECK(model.violations == std::vector<std::string>{"read of a register that is not there"});
   model.write(Register::esr, 0);
   CHECK(model.violations.back() == "write to a register that cannot be written");
@@ -226,6 +231,37 @@ TEST_CASE(
   running.read(Register::msr);
   CHECK((running.read(Register::msr) & 1) == 1);
   CHECK_FALSE(running.begin());
+}
+
+TEST_CASE("asleep, in initialisation or bus-off it neither sends nor receives [RM0008 24.4, 24.7.6]") {
+  Model model;
+  model.handshake_delay = 0;
+  model.write(Register::fs1r, 1);
+  model.write(Register::fa1r, 1);  // one mask of 32 bits, of which none counts
+  model.write(Register::fmr, 0);
+  model.write(bxcan::of_mailbox(Register::tir, 0), 0x100U << 21 | 1);
+  const auto on_the_bus = [&model] {
+    const bool received = model.deliver({0x200, 0, {}});
+    CHECK((model.read(Register::rf0r) & 3) == (received ? 1U : 0U));
+    if (received) model.write(Register::rf0r, 0x20);
+    model.read(Register::rf0r);
+    const bool sends = model.begin().has_value();
+    CHECK(sends == received);
+    return sends;
+  };
+  CHECK_FALSE(on_the_bus());  // asleep
+  model.write(Register::mcr, 1);
+  REQUIRE((model.read(Register::msr) & 3) == 1);
+  CHECK_FALSE(on_the_bus());
+  model.write(Register::mcr, 0);
+  REQUIRE((model.read(Register::msr) & 3) == 0);
+  for (int i = 0; i < 32; ++i) {
+    CHECK(on_the_bus());
+    model.end(End::bit_error);
+  }
+  REQUIRE((model.read(Register::esr) & 4) != 0);
+  CHECK_FALSE(on_the_bus());
+  CHECK(model.violations.empty());
 }
 
 TEST_CASE("a mailbox's frame, and what its status says of it [RM0008 24.9.3]") {
@@ -433,7 +469,7 @@ TEST_CASE("each bank has a place, and filters are set up while they are off [RM0
     CHECK(model.read(which) == 0);
   }
   model.violations.clear();
-  model.read(static_cast<Register>(0x240 + 14 * 8));
+  CHECK(model.read(static_cast<Register>(0x240 + 14 * 8)) == 0);
   CHECK(model.violations.size() == 1);
 }
 

@@ -177,7 +177,13 @@ TEST_CASE("A bit is both, names are what they name, flags are those that have na
   flags.flags = true;
   const std::vector<protocol::NamedValue> bits{{0, "low"}, {7, "high"}, {8, "beyond"}, {-1, "none"}};
   flags.values = bits;
-  CHECK(different(seen_of(flags)) == std::vector<std::int64_t>{0, 1, 128, 129});
+  const auto sets = seen_of(flags);
+  CHECK(different(sets) == std::vector<std::int64_t>{0, 1, 128, 129});
+  for (const std::int64_t set : {0, 1, 128, 129}) {  // alike: a name of no bit takes none away
+    const auto count = static_cast<double>(std::count(sets.begin(), sets.end(), set));
+    CAPTURE(set);
+    CHECK(count / static_cast<double>(sets.size()) == Approx(0.25).margin(0.06));
+  }
 }
 
 TEST_CASE("A name or a bit stays for 5 to 20 s, a number takes a new way every 2 to 8 s, without a corner") {

@@ -9,6 +9,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <string_view>
 #include <tuple>
@@ -262,6 +263,25 @@ protocol::Topic message_of(const protocol::FrameLayout& layout, std::string_view
   topic.kind = protocol::Kind::message;
   topic.frames = {&layout, 1};
   return topic;
+}
+
+TEST_CASE("Sensors, actuators and what has no frame are no messages, and change none") {
+  protocol::FrameLayout layout;
+  layout.length = 1;
+  layout.address = {protocol::Address::By::identifier, false, 0x100};
+  std::vector<protocol::Topic> topics;
+  for (const std::string_view name : {"Sensor", "Actuator", "Empty", "Message"}) {
+    topics.push_back(message_of(layout, name));
+    topics.back().cycle = 1s;
+  }
+  topics[0].kind = protocol::Kind::sensor;
+  topics[1].kind = protocol::Kind::actuator;
+  topics[2].frames = {};
+  const protocol::Catalogue all{"car", 500'000, {}, topics};
+  const protocol::Catalogue alone{"car", 500'000, {}, std::span{topics}.last(1)};
+  const sim::MessagePlayer player{all, {.seed = 3}};
+  CHECK(player.size() == 1);
+  CHECK(player.next_event() == sim::MessagePlayer{alone, {.seed = 3}}.next_event());
 }
 
 TEST_CASE("A message without a period comes at half to one and a half of what is asked for, at random") {

@@ -154,6 +154,7 @@ class Interface final : public transport::Bus {
     return answer;
   }
   base::Result<can::Received> receive(base::Duration) override {
+    if (gone) return base::Error::closed;
     if (coming.empty()) return base::Error::timed_out;
     can::Received received;
     received.frame = coming.back();
@@ -177,6 +178,22 @@ class Interface final : public transport::Bus {
  private:
   transport::BusCounters counters_{};
 };
+
+TEST_CASE("Messages on a CAN interface say first which of them are not sent") {
+  const auto classic = frame_of(0x100), fd = frame_of(0x102, 12, true);
+  const std::vector<protocol::Topic> topics{message_of("Plain", classic, 1h), message_of("Rare", classic, 0s),
+                                            message_of("Wide", fd, 1h)};
+  const protocol::Catalogue catalogue{"car", 500'000, {}, topics};
+  Interface bus;
+  Lines said;
+  CHECK(sim::serve_messages(bus, catalogue, {}, reporting_to(said)).well());
+  CHECK(said ==
+        Lines{"not sent, since the spec states no period: Rare (--sporadic 1s sends them too)",
+              "not sent, since 'can9' carries no CAN FD frames: Wide; use a CAN interface in FD mode, "
+              "or the simulated bus",
+              "simulated 1 message of car on can9; Ctrl-C ends it",
+              "bus               0 frames sent, 0 dropped: the bus was full"});
+}
 
 TEST_CASE("What finds a CAN interface full waits, a thousand frames at most, and is tried each millisecond") {
   const auto layout = frame_of(0x100);
@@ -231,6 +248,50 @@ TEST_CASE("Boards of an AMiRo that find a CAN interface full try again each mill
   REQUIRE(turns == 101);
   CHECK(end - begin >= 90ms);
   CHECK(bus.sent.empty());
+}
+
+TEST_CASE("Boards of an AMiRo on a CAN interface hear no error frames, and end when it is gone") {
+  Lines said;
+  sim::Shell shell = reporting_to(said);
+  {
+    Interface bus;
+    bus.answer = false;
+    bus.coming.push_back({0x4, 8, {}, can::Format::error});
+    int turns = 0;
+    shell.stop = [&turns] { return turns++ == 3; };
+    CHECK(sim::serve_amiro(bus, {}, shell).well());
+    CHECK(bus.coming.empty());
+    CHECK(said == Lines{"di_wheel_drive    nothing came", "power_management  nothing came",
+                        "light_ring        nothing came"});
+  }
+  Interface bus;
+  bus.gone = true;
+  const auto give_up = Clock::now() + 20s;
+  shell.stop = [&give_up] { return Clock::now() > give_up; };
+  const Ending ending = sim::serve_amiro(bus, {}, shell);
+  REQUIRE(ending.failures.size() == 1);
+  CHECK(ending.failures[0] == bus.failed);
+  CHECK_FALSE(ending.misuse);
+}
+
+TEST_CASE("What still waits for a CAN interface in the end is counted with what was dropped") {
+  const auto layout = frame_of(0x100);
+  const std::vector<protocol::Topic> topics{message_of("M", layout, 1ms)};
+  const protocol::Catalogue catalogue{"car", 500'000, {}, topics};
+  Interface bus;
+  bus.answer = false;
+  const auto give_up = Clock::now() + 20s;
+  Lines said;
+  sim::Shell shell = reporting_to(said);
+  shell.stop = [&] { return bus.asked >= 3 || Clock::now() > give_up; };
+  CHECK(sim::serve_messages(bus, catalogue, {}, shell).well());
+  const std::string beginning = "bus               0 frames sent, ";
+  const auto line = std::find_if(said.begin(), said.end(),
+                                 [&](const std::string& text) { return text.starts_with(beginning); });
+  REQUIRE(line != said.end());
+  const auto dropped = std::stoull(line->substr(beginning.size()));
+  CHECK(dropped >= 1U);
+  CHECK(dropped <= 30'000U);  // one each millisecond
 }
 
 TEST_CASE("What a CAN interface refuses for good is counted, and one that is gone ends the simulation") {

@@ -77,6 +77,7 @@ TEST_CASE("what is seen of mappers: each with its tower, and each other") {
   REQUIRE(loaded.world);
   sim::mapper::World world{*loaded.world, {.seed = 1}};
   world.robot(0).show({.green = true, .yellow = false});
+  world.robot(1).show({.green = false, .yellow = true});
   world.robot(1).drive({1, 1});
   world.advance_to(base::Time{500ms});
   const SeenWorld seen = sim::seen(world);
@@ -86,6 +87,7 @@ TEST_CASE("what is seen of mappers: each with its tower, and each other") {
   CHECK(seen.robots[0].name == "AVR");
   CHECK(seen.robots[1].name == "Arduino");
   CHECK(seen.robots[0].lights == std::vector<firmware::boards::Colour>{{0, 255, 0}, {0, 0, 0}});
+  CHECK(seen.robots[1].lights == std::vector<firmware::boards::Colour>{{0, 0, 0}, {255, 255, 0}});
   CHECK_FALSE(seen.robots[0].charge);
   CHECK(seen.robots[0].wheels.left == 0);
   CHECK(seen.robots[1].wheels.left > 0.05);

@@ -17,11 +17,13 @@
 
 #include "ocm/protocol/message.hpp"
 #include "ocm/protocol/request.hpp"
+#include "ocm/simulation/virtual_bus_server.hpp"
 #include "ocm/topics/amiro.hpp"
 #include "ocm/transport/bus.hpp"
 #include "ocm/transport/virtual_bus.hpp"
 
 #include "sim/serve/amiro.hpp"
+#include "sim/serve/bus_report.hpp"
 #include "sim/serve/mappers.hpp"
 #include "sim/serve/messages.hpp"
 #include "sim/serve/round.hpp"
@@ -63,10 +65,12 @@ TEST_CASE("An AMiRo on a virtual bus says where it is, and at its end what each 
   Watched watched;
   sim::AmiroOptions options;
   options.without = {"light_ring"};
-  const Ending ending = sim::serve_amiro(folder / "bus", options, watched.shell());
+  const std::string bus = folder / "bus";
+  const Ending ending = sim::serve_amiro(bus, options, watched.shell());
   CHECK(ending.well());
   REQUIRE(watched.reports.size() == 5);
-  CHECK(watched.reports[0].starts_with("simulated AMiRo on --bus sim:"));
+  CHECK(watched.reports[0] == "simulated AMiRo on --bus sim:" + bus + " (" + bus + "), " +
+                                  std::to_string(amiro::bit_rate) + " bit/s; Ctrl-C ends it");
   CHECK(watched.reports[1] == "di_wheel_drive    nothing came");
   CHECK(watched.reports[3] == "light_ring        switched off");
   CHECK(watched.reports[4].starts_with("bus               0 frames, 0 clients"));
@@ -111,6 +115,49 @@ struct OneMessage {
   protocol::Topic message;
   protocol::Catalogue catalogue{"car", 500'000, {}, {&message, 1}};
 };
+
+TEST_CASE("Messages on a virtual bus say first which of them are not sent, then where they are") {
+  const Folder folder;
+  const std::string bus = folder / "bus";
+  const OneMessage seldom{std::chrono::hours{1}};
+  std::vector<protocol::Topic> topics{seldom.message, seldom.message};
+  topics[1].name = "Rare";
+  topics[1].cycle = {};
+  const protocol::Catalogue catalogue{"car", 500'000, {}, topics};
+  Watched watched{.turns = 0};
+  CHECK(sim::serve_messages(bus, catalogue, {}, watched.shell()).well());
+  CHECK(
+      watched.reports ==
+      std::vector<std::string>{
+          "not sent, since the spec states no period: Rare (--sporadic 1s sends them too)",
+          "simulated 1 message of car on --bus sim:" + bus + " (" + bus + "), 500000 bit/s; Ctrl-C ends it",
+          "bus               0 frames, 0 clients, 0 turned away, 0 misbehaved, 0 frames lost by slow ones"});
+}
+
+TEST_CASE(
+    "What a virtual bus counted is said: clashes where there were some, errors where they are asked for") {
+  const Folder folder;
+  const auto reports = [&folder](std::size_t nodes, bool disturbed) {
+    const auto opened = simulation::VirtualBusServer::open({.path = folder / "bus"});
+    REQUIRE(static_cast<bool>(opened));
+    auto& server = **opened;
+    auto& wire = server.arbiter();
+    for (std::size_t i = 0; i < nodes; ++i)
+      CHECK(wire.send(wire.attach(), can::Frame{0x100, 1, {}}, base::Time{}).ok());
+    if (disturbed) wire.disturb({.boundary = 20});
+    server.advance(base::Time{std::chrono::seconds{1}}, [](const simulation::Delivery&) {});
+    Watched watched;
+    sim::report_bus(server, disturbed, watched.shell());
+    return watched.reports;
+  };
+  const std::string rest = ", 0 clients, 0 turned away, 0 misbehaved, 0 frames lost by slow ones";
+  CHECK(reports(1, false) == std::vector<std::string>{"bus               1 frame" + rest});
+  CHECK(reports(1, true) == std::vector<std::string>{"bus               1 frame" + rest,
+                                                     "                  1 error frame, 1 frame repeated"});
+  CHECK(reports(2, false) ==
+        std::vector<std::string>{"bus               2 frames" + rest,
+                                 "                  1 time two senders at once with the same identifier"});
+}
 
 TEST_CASE("A simulation with more to do than the machine does ends when it is asked to, and says so") {
   const Folder folder;
@@ -322,6 +369,11 @@ TEST_CASE("A board that does not exist is the options' fault") {
   CHECK(ending.misuse);
   REQUIRE(ending.failures.size() == 1);
   CHECK(ending.failures[0].what == "sim: no board 'flux_capacitor'");
+  CHECK(ending.failures[0].remedy == "one of: di_wheel_drive, power_management, light_ring");
+  Interface bus{std::vector<can::Frame>{}};
+  const Ending on_interface = sim::serve_amiro(bus, options, watched.shell());
+  CHECK(on_interface.misuse);
+  CHECK(on_interface.failures == ending.failures);
   CHECK(watched.reports.empty());
 }
 
@@ -355,7 +407,15 @@ TEST_CASE("Mappers behind a central, or each on a line, report what each of them
     CHECK(ending.well());
     REQUIRE_FALSE(watched.reports.empty());
     CHECK(watched.reports[0].starts_with("simulated 2 mappers in 'square', "));
-    CHECK(watched.reports.size() == (lines ? 3 : 6));
+    // Nothing happened yet, and nothing that was lost is named.
+    const std::string done = " links 0, handshakes 0, updates 0, idles 0, set points 0, arrived 0, stops 0";
+    const std::string carried = "           packets to it 0; from it 0";
+    const std::vector<std::string> reports(watched.reports.begin() + 1, watched.reports.end());
+    if (lines)
+      CHECK(reports == std::vector<std::string>{"AVR       " + done, "robot_2   " + done});
+    else
+      CHECK(reports == std::vector<std::string>{"AVR       " + done, carried, "robot_2   " + done, carried,
+                                                "central    nothing was lost"});
   }
 }
 
@@ -422,7 +482,21 @@ TEST_CASE("A world that cannot be had is said with all that is wrong with it") {
     const Ending ending = sim::serve_mappers(options, watched.shell());
     REQUIRE(ending.failures.size() == 1);
     CHECK(ending.failures[0].what == "sim: no room for 100000 robots in 'square'");
+    CHECK(ending.failures[0].remedy == "take fewer, or a larger world with --world");
     CHECK_FALSE(ending.misuse);
+  }
+  SECTION("more robots than a fleet has") {
+    options.world = folder / "many.json";
+    std::string robots;
+    for (int i = 0; i < 129; ++i)
+      robots += (i == 0 ? R"({"name": ")" : R"(, {"name": ")") + std::to_string(i) +
+                R"(", "model": "avr", "at": [)" + std::to_string(i) + ", 0]}";
+    std::ofstream{options.world} << R"({"name": "many", "walls": [], "robots": [)" << robots << "]}";
+    const Ending ending = sim::serve_mappers(options, watched.shell());
+    REQUIRE(ending.failures.size() == 1);
+    CHECK(ending.failures[0].what == "sim: 129 robots");
+    CHECK(ending.failures[0].remedy == "at most 128");
+    CHECK(ending.misuse);
   }
   CHECK(watched.reports.empty());
 }

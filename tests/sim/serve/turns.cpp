@@ -166,6 +166,12 @@ TEST_CASE("interference comes at random, as often as it is asked for, and none w
   CHECK(sum / 10 == Approx(600).margin(5 * std::sqrt(600.0 / 10)));
   CHECK(errors_in_a_minute(10, 1) == errors_in_a_minute(10, 1));
   CHECK(errors_in_a_minute(10, 1) != errors_in_a_minute(10, 2));
+  // At the most it is one each nanosecond, in which this bus has a bit: a microsecond is over at some time.
+  simulation::Arbiter quick{1'000'000'000};
+  sim::Interference dense{1e12, 1};
+  dense.disturb(quick, base::Time{1us - 1s});
+  quick.advance(base::Time{1ms}, [](const Delivery&) {});
+  CHECK(quick.totals().errors == 1000);
 }
 
 }  // namespace sim_serve_turns_test
