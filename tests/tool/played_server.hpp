@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <iterator>
@@ -23,8 +24,8 @@ namespace ocm::test {
 class PlayedServer {
  public:
   /// When it answers: `ahead`, all of it behind the first request, so that a program that asks never waits
-  /// for it, and no patience is too short on a busy machine.
-  enum class Says : std::uint8_t { in_turn, ahead };
+  /// for it, and no patience is too short on a busy machine; `late`, 100 ms behind each request.
+  enum class Says : std::uint8_t { in_turn, ahead, late };
 
   PlayedServer(const std::string& path, std::vector<std::string> answers, Says says = Says::in_turn)
       : says_(says), listener_(::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0)) {
@@ -49,7 +50,9 @@ class PlayedServer {
   void play(const std::vector<std::string>& answers) {
     const host::Descriptor socket{::accept4(listener_.get(), nullptr, nullptr, SOCK_CLOEXEC)};
     for (std::size_t i = 0; i < answers.size(); ++i) {
-      if ((i == 0 || says_ == Says::in_turn) && !take(socket)) return;
+      if ((i == 0 || says_ != Says::ahead) && !take(socket)) return;
+      if (says_ == Says::late)
+        std::this_thread::sleep_for(std::chrono::milliseconds{100});  // late is what it plays
       if (answers[i].empty())
         while (take(socket)) {
         }

@@ -1,6 +1,7 @@
 // Of which kind a dongle is, by what it answers and when: it is played on a pseudo terminal.
 #include "cli/fleet/dongle.hpp"
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <chrono>
@@ -14,6 +15,7 @@
 #include <thread>
 #include <unistd.h>
 #include <utility>
+#include <vector>
 
 #include <catch2/catch.hpp>
 
@@ -26,20 +28,21 @@ using namespace ocm;
 using cli::fleet::open_dongle;
 using mapper::server::Dialect;
 
-/// Silent, or says something each time that it has heard some word.
+/// Silent, or says something as soon as it has heard some word, one after the other; the last one each time.
 class Device {
  public:
-  explicit Device(std::string word = {}, std::string answer = {})
-      : word_(std::move(word)),
-        answer_(std::move(answer)),
-        primary_(::posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC)) {
+  struct Answer {
+    std::string word, text;
+  };
+  explicit Device(std::vector<Answer> answers = {})
+      : answers_(std::move(answers)), primary_(::posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC)) {
     REQUIRE(primary_);
     REQUIRE(::grantpt(primary_.get()) == 0);
     REQUIRE(::unlockpt(primary_.get()) == 0);
     path = ::ptsname(primary_.get());
     secondary_ = host::Descriptor{::open(path.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC)};
     REQUIRE(secondary_);
-    if (!word_.empty()) talks_ = std::thread{[this] { talk(); }};
+    if (!answers_.empty()) talks_ = std::thread{[this] { talk(); }};
   }
   ~Device() {
     over_ = true;
@@ -62,15 +65,18 @@ class Device {
 
  private:
   void talk() {
-    for (std::size_t answered = 0; !over_;) {
-      const auto found = heard_.find(word_, answered);
+    std::size_t heard_before = 0;
+    for (std::size_t i = 0; !over_ && !answers_.empty();) {
+      const Answer& answer = answers_[std::min(i, answers_.size() - 1)];
+      const auto found = heard_.find(answer.word, heard_before);
       if (found == std::string::npos) {
         pollfd line{primary_.get(), POLLIN, 0};
         if (::poll(&line, 1, 10) > 0) static_cast<void>(hear());
         continue;
       }
-      answered = found + word_.size();
-      for (std::string_view rest = answer_; !over_ && !rest.empty();) {
+      heard_before = found + answer.word.size();
+      ++i;
+      for (std::string_view rest = answer.text; !over_ && !rest.empty();) {
         const ssize_t size = ::write(primary_.get(), rest.data(), rest.size());
         if (size > 0) rest.remove_prefix(static_cast<std::size_t>(size));
       }
@@ -83,14 +89,15 @@ class Device {
     return size > 0;
   }
 
-  std::string word_, answer_, heard_;
+  std::vector<Answer> answers_;
+  std::string heard_;
   host::Descriptor primary_, secondary_;
   std::atomic<bool> over_ = false;
   std::thread talks_;
 };
 
 TEST_CASE("dongle: it is one of ours where a whole line says how many robots are found") {
-  const Device device{"stop\n", "found it\nfound 2\n"};
+  const Device device{{{"stop\n", "found it\nfound 2\n"}}};
   const auto dongle = open_dongle("robots", device.path, {});
   CHECK(dongle.dialect == Dialect::words);
   CHECK(dongle.heard == "found it\nfound 2\n");
@@ -98,12 +105,13 @@ TEST_CASE("dongle: it is one of ours where a whole line says how many robots are
 }
 
 TEST_CASE("dongle: it has 600 ms to answer, and 100 ms to take the end of what it holds") {
-  const Device device{"AT?.", "OK."};
+  const std::string no_answer = "found it\nfound 2";  // another line, and one that does not end
+  const Device device{{{"stop\n", no_answer}, {"AT?.", "OK."}}};
   const auto begin = std::chrono::steady_clock::now();
   const auto dongle = open_dongle("robots", device.path, {});
   CHECK(std::chrono::steady_clock::now() - begin >= 700ms);
   CHECK(dongle.dialect == Dialect::at);
-  CHECK(dongle.heard == "OK.");
+  CHECK(dongle.heard == no_answer + "OK.");
 }
 
 TEST_CASE("dongle: one that is known is led out of data mode, and has 100 ms to say so") {
@@ -135,7 +143,7 @@ TEST_CASE("dongle: of two speeds the first at which it is known is taken, or the
   };
   for (const Row& row : {Row{0, B38400}, Row{115'200, B115200}}) {
     CAPTURE(row.baud);
-    const Device device{"stop\n", "found 0\n"};
+    const Device device{{{"stop\n", "found 0\n"}}};
     cli::fleet::DongleOptions options;
     options.baud = row.baud;
     const auto dongle = open_dongle("robots", device.path, options);

@@ -61,6 +61,13 @@ TEST_CASE("joined line: between two looks it leaves the owner alone for 50 ms") 
   CHECK(owner.heard() == std::vector<std::string>{"hello 1 goto", "robots 0", "robots 0"});
 }
 
+TEST_CASE("joined line: an owner that does not answer at once, as on a busy machine, is waited for") {
+  const PlayedOwner owner{{"ok\nmap", "ok\nidle\n" + row(3, "A")}, PlayedServer::Says::late};
+  const JoinedLine line = PlayedOwner::joined();
+  REQUIRE(line.peers().size() == 1);
+  CHECK(line.peers()[0].index == 3);
+}
+
 TEST_CASE("joined line: an owner that goes round in circles, or says what is not known, ends the command") {
   for (const char* const answer :
        {"ok\nidle\nmore 0\n", "ok\nmore x\n", "ok\nmore -1\n", "ok\nmore\n", "ok\nrow\n"}) {

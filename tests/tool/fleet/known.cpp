@@ -1,13 +1,17 @@
 // What is known before robots drive: where they begin, and the world that they are in.
 #include "cli/fleet/known.hpp"
 
+#include <cstddef>
+#include <fstream>
 #include <string>
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
 
 #include "cli/shared/messages.hpp"
+#include "sim/worlds/reader.hpp"
 #include "tests/tool/captured.hpp"
+#include "tests/unit/host/host_testing.hpp"
 
 namespace fleet_known_test {
 
@@ -71,6 +75,21 @@ TEST_CASE("known: starts that are typed go before those of a world") {
   CHECK(both.inside.size() == world.inside.size() + 2);
   CHECK(both.inside.back().x_m == 1);
   CHECK(both.walls.size() == world.walls.size());
+}
+
+TEST_CASE("known: of a world with mistakes each is said, the first one last, with what to do") {
+  const TemporaryDirectory folder;
+  const std::string file = folder.path() + "/bad.json";
+  std::ofstream{file} << R"({"name": "bad", "wall": [], "robot": []})";
+  const auto problems = sim::worlds::find(file).problems;
+  REQUIRE(problems.size() >= 3);
+  std::string expected;
+  for (std::size_t i = 1; i < problems.size(); ++i) expected += sim::worlds::in_words(problems[i]) + "\n";
+  expected +=
+      "amiroctl: map: " + sim::worlds::in_words(problems[0]) + "\n          " + problems[0].remedy + "\n";
+  const auto left = leaving([&] { static_cast<void>(known_of("map", file, {})); });
+  CHECK(left.code == cli::exit_failure);
+  CHECK(left.text == expected);
 }
 
 }  // namespace fleet_known_test

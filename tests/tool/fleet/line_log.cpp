@@ -1,9 +1,16 @@
 #include "cli/fleet/line_log.hpp"
 
 #include <chrono>
+#include <fstream>
 #include <string>
 
 #include <catch2/catch.hpp>
+
+#include "cli/fleet/line_log_file.hpp"
+#include "cli/shared/clock.hpp"
+#include "cli/shared/messages.hpp"
+#include "tests/tool/captured.hpp"
+#include "tests/unit/host/host_testing.hpp"
 
 namespace fleet_line_log_test {
 
@@ -81,6 +88,58 @@ TEST_CASE("line log: what could not be read of one is counted, and the first is 
   CHECK_FALSE(parse_line_log(""));
   CHECK_FALSE(parse_line_log("# line of a central, version 2\n(1.000000) a\n"));
   CHECK_FALSE(parse_line_log("(1.000000) a\n" + first));
+}
+
+TEST_CASE("line log: a file of it is known by its first line, and none is overwritten") {
+  const test::TemporaryDirectory folder;
+  const std::string path = folder.path() + "/room.line";
+  const base::Time before = cli::unix_time();
+  {
+    cli::fleet::LineLog log{"central", path};
+    log.write("[0]:A:{S,IDL}\n");
+    log.write("");
+    log.write("found 2\n");
+    CHECK(log.is_whole());
+  }
+  CHECK(cli::fleet::is_line_log(path));
+  const auto log = cli::fleet::read_line_log("serve", path);
+  CHECK(log.damaged == 0);
+  REQUIRE(log.said.size() == 2);
+  CHECK(log.said[0].text == "[0]:A:{S,IDL}\n");
+  CHECK(log.said[1].text == "found 2\n");
+  CHECK(log.said[0].time >= before - 1us);  // it is cut to microseconds
+  CHECK(log.said[1].time < before + 1h);
+  const auto left = test::leaving([&] { const cli::fleet::LineLog again{"central", path}; });
+  CHECK(left.code == cli::exit_failure);
+  CHECK(left.text == "amiroctl: central: --record " + path +
+                         ": File exists\n          give another name: a file that is there is not "
+                         "overwritten\n");
+  const std::string nowhere = folder.path() + "/none/room.line";
+  CHECK(test::leaving([&] {
+          const cli::fleet::LineLog none{"map", nowhere};
+        }).text == "amiroctl: map: --record " + nowhere +
+                       ": No such file or directory\n          name a file in a folder that you may write\n");
+}
+
+TEST_CASE("line log: a file that begins otherwise, or is not there, is none") {
+  const test::TemporaryDirectory folder;
+  const std::string path = folder.path() + "/other.line";
+  CHECK_FALSE(cli::fleet::is_line_log(path));
+  const std::string first{cli::fleet::line_log_begins};
+  for (const std::string& begin :
+       {""s, first, first + "2\n", "\n" + first + "\n", "x" + first.substr(1) + "\n"}) {
+    CAPTURE(begin);
+    std::ofstream{path} << begin;
+    CHECK_FALSE(cli::fleet::is_line_log(path));
+  }
+  std::ofstream{path} << first << "\n";
+  CHECK(cli::fleet::is_line_log(path));
+  std::ofstream{path} << "(1.000000) a\n";
+  const auto left = test::leaving([&] { static_cast<void>(cli::fleet::read_line_log("serve", path)); });
+  CHECK(left.code == cli::exit_failure);
+  CHECK(left.text == "amiroctl: serve: " + path +
+                         " is no log of a central's line\n          map --record and central --own --record "
+                         "write one\n");
 }
 
 }  // namespace fleet_line_log_test

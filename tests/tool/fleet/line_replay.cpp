@@ -125,6 +125,32 @@ TEST_CASE("line replay: where robots began must be known, but for a robot alone;
   CHECK_FALSE(LineReplay{moment.read, {}}.robots()[0].origin_known);
 }
 
+TEST_CASE(
+    "line replay: a beam ends at another robot where that has said its place, and its beginning is known") {
+  Known both = known();
+  both.starts[1].pose = {1.45F, 2, 0};  // in front of A, where its beam of 40 cm ends
+  Known first = both;
+  first.starts.pop_back();
+  const auto on_robots = [](const Log& log, const Known& known) {
+    LineReplay replay{log.read, known};
+    replay.go_to(1h);
+    CHECK(replay.drawing().map().counters().hits > 0);
+    return replay.drawing().map().counters().on_robots;
+  };
+  Log log;
+  log.says("found 2\n0:C0000000000A:A\n1:C0000000000B:B\nend of list\n");
+  log.robot(0, handshake);
+  log.robot(0, update(0, 0, 0));
+  CHECK(on_robots(log, both) == 0);
+  Log there = log, anywhere = log;
+  there.robot(1, update(0, 0, 0));
+  there.robot(0, update(0, 0, 0));
+  CHECK(on_robots(there, both) > 0);
+  anywhere.robot(1, update(145, 200, 0));
+  anywhere.robot(0, update(0, 0, 0));
+  CHECK(on_robots(anywhere, first) == 0);
+}
+
 TEST_CASE("line replay: a robot moves while its updates show it, or it does not say that it stands") {
   const auto state = [](const Log& log) {
     LineReplay replay{log.read, known()};

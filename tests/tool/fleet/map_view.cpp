@@ -1,8 +1,10 @@
 // A map that another program draws: which files are written of it, and what is said at the end.
 #include "cli/fleet/map_view.hpp"
 
+#include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <unistd.h>
@@ -17,6 +19,7 @@
 
 namespace fleet_map_view_test {
 
+using namespace std::chrono_literals;
 using namespace ocm;
 using namespace ocm::test;
 using cli::fleet::MapOptions;
@@ -41,15 +44,16 @@ class Bench {
     text << std::ifstream{file(name), std::ios::binary}.rdbuf();
     return text.str();
   }
-  /// Until the other program has ended, which it does when it has given these texts.
-  void views(const std::vector<std::string>& files, const std::vector<std::string>& texts,
-             bool json = false) {
+  /// Until the other program has ended, which it does when it has given these texts, or for `duration`.
+  void views(const std::vector<std::string>& files, const std::vector<std::string>& texts, bool json = false,
+             std::optional<base::Duration> duration = {}) {
     std::vector<std::string> answers{"ok\nmap", "ok\nidle\n"};
     for (const std::string& text : texts) answers.push_back(fmt::format("ok\n{}\n{}", text.size(), text));
     const PlayedOwner owner{answers};
     MapOptions options;
     for (const std::string& name : files) options.files.push_back(file(name));
     options.json = json;
+    options.duration = duration;
     Captured said{STDOUT_FILENO}, remarked{STDERR_FILENO};
     auto line = PlayedOwner::joined("map");
     code = cli::fleet::view_map(options, line);
@@ -96,6 +100,16 @@ TEST_CASE("map view: a map of which nothing was drawn yet is none, and a failure
   bench.views({"a.pgm", "b.pgm", "c.pgm"}, {"", image, about});
   CHECK(bench.code == cli::exit_success);
   CHECK(bench.content("b.pgm") == image);
+}
+
+TEST_CASE("map view: it draws again after two seconds, if its time is not over by then") {
+  Bench bench;
+  bench.views({"a.pgm"}, {image, about, image, about}, false, 300ms);
+  CHECK(bench.code == cli::exit_success);
+  CHECK(bench.content("a.pgm") == image);
+  CHECK(bench.out.ends_with(" s, drawn 1 time\n"));
+  CHECK(bench.err == fmt::format("map: draws what the owner (process {}) draws, each 2 s; Ctrl-C ends that\n",
+                                 ::getpid()));
 }
 
 TEST_CASE("map view: a file that cannot be written is said, and a failure; the others are written") {

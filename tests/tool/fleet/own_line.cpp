@@ -28,13 +28,36 @@ using namespace std::chrono_literals;
 using namespace ocm;
 using namespace ocm::test;
 
+/// That says nothing.
+host::Descriptor silent_dongle() {
+  host::Descriptor dongle{::posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC)};
+  REQUIRE(dongle);
+  REQUIRE(::grantpt(dongle.get()) == 0);
+  REQUIRE(::unlockpt(dongle.get()) == 0);
+  return dongle;
+}
+
+TEST_CASE("own line: where nothing comes it looks after the other programs, each 50 ms") {
+  host::Descriptor dongle = silent_dongle();
+  auto port = transport::SerialPort::open(::ptsname(dongle.get()));
+  REQUIRE(port);
+  std::chrono::steady_clock::duration took{};
+  static_cast<void>(leaving([&] {
+    cli::fleet::OwnLine line{
+        "robots", cli::fleet::Dongle{std::move(*port), mapper::server::Dialect::words, {}}, {}, nullptr};
+    const auto begin = std::chrono::steady_clock::now();
+    line.exchange();
+    took = std::chrono::steady_clock::now() - begin;
+    dongle.reset();  // or its last answer is waited for
+  }));
+  CHECK(took >= 50ms);
+  CHECK(took < 10s);
+}
+
 TEST_CASE("own line: a line that is gone is said once, whether it is noticed by writing or by reading") {
   for (const bool writes : {true, false}) {
     CAPTURE(writes);
-    host::Descriptor dongle{::posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC)};
-    REQUIRE(dongle);
-    REQUIRE(::grantpt(dongle.get()) == 0);
-    REQUIRE(::unlockpt(dongle.get()) == 0);
+    host::Descriptor dongle = silent_dongle();
     const std::string path = ::ptsname(dongle.get());
     auto port = transport::SerialPort::open(path);
     REQUIRE(port);

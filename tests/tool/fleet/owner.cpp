@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <regex>
+#include <sstream>
 #include <string>
 #include <unistd.h>
 #include <utility>
@@ -14,6 +15,7 @@
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
 
+#include "cli/shared/local_link.hpp"
 #include "tests/tool/golden.hpp"
 #include "tests/tool/local_client.hpp"
 #include "tests/unit/cognitive/testing/virtual_central.hpp"
@@ -311,6 +313,52 @@ TEST_CASE("owner: who joined is at work for two seconds behind its last word") {
   static_cast<void>(bench.ask("goto", "robots"));
   CHECK(bench.owner->at_work(bench.now + 2s).size() == 1);
   CHECK(bench.owner->at_work(bench.now + 2s + 1ns).empty());
+}
+
+TEST_CASE("owner: robots that find no room in an answer come in the next one") {
+  Bench bench;
+  auto& server = bench.server;
+  constexpr unsigned most = cognitive::Fleet::most_robots;
+  const std::string name(50, 'N');
+  std::string list = fmt::format("found {}\n", most);
+  for (unsigned index = 0; index < most; ++index)
+    list += fmt::format("{}:C000000000{:02X}:{}\n", index, index, name);
+  CHECK(server.client().scan(0s));
+  server.expire(bench.now);
+  server.feed("found 0\n" + list + "end of list\n", bench.now);
+  REQUIRE(server.client().peers().size() == most);
+  for (unsigned index = 0; index < most; ++index) {
+    server.fleet().feed(fmt::format("[{}]:A:{{H,15,20,0,3,0,90,180,270,2000,0}}\n"
+                                    "[{}]:A:{{U,-177,-61,-68,49,10,20,30,40}}\n",
+                                    index, index),
+                        bench.now);
+    CHECK_FALSE(bench.owner->go(index, {90, 50}, bench.now));
+  }
+  unsigned next = 0;
+  int answers = 0;
+  for (bool more = true; more && answers < 5; ++answers) {
+    const std::string answer = bench.ask("robots", fmt::format("robots {}", next));
+    CHECK(answer.size() < cli::longest_local_message - 1'900);  // with room for what is said besides
+    std::istringstream lines{answer};
+    std::string line;
+    REQUIRE(std::getline(lines, line));
+    CHECK(line == "ok");
+    REQUIRE(std::getline(lines, line));
+    CHECK(line == "idle");
+    more = false;
+    while (std::getline(lines, line)) {
+      CHECK_FALSE(more);  // that is the last line
+      more = line == fmt::format("more {}", next);
+      if (more) continue;
+      const auto robot = cli::fleet::parse_row(line);
+      REQUIRE(robot);
+      CHECK(robot->index == next);
+      CHECK(robot->name == name);
+      ++next;
+    }
+  }
+  CHECK(next == most);
+  CHECK(answers == 2);
 }
 
 /// A radio on which 130 robots are seen.

@@ -20,8 +20,8 @@ namespace ocm::test {
 /// With a socket that goes with it. It answers as its list says, ahead of what is asked, and then has ended.
 class PlayedOwner {
  public:
-  explicit PlayedOwner(std::vector<std::string> answers)
-      : server_(free_path(), std::move(answers), PlayedServer::Says::ahead) {}
+  explicit PlayedOwner(std::vector<std::string> answers, PlayedServer::Says says = PlayedServer::Says::ahead)
+      : server_(free_path(), std::move(answers), says) {}
   ~PlayedOwner() { std::filesystem::remove(path()); }
   PlayedOwner(const PlayedOwner&) = delete;
   PlayedOwner& operator=(const PlayedOwner&) = delete;

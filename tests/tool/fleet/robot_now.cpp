@@ -191,6 +191,14 @@ TEST_CASE("robot now: what is no row") {
     CAPTURE(row);
     CHECK_FALSE(parse_row(row));
   }
+  // An older program says less: of all else nothing is known.
+  const auto older = parse_row("index=5\tname=A");
+  REQUIRE(older);
+  CHECK(to_row(*older) ==
+        "index=5\taddress=\tname=A\tlinked=0\tconfirmed=0\tidle=0\tlocated=0\tpaused=0\tlost=0\theld=0"
+        "\tupdated=0\theard=0\tlast=none\tadvice=stay\tquality=0\tpieces=0\ttorn=0\tprogress=none\tsaid=0"
+        "\tstanding=0\tblocked=0\toff_cm=0\toff_deg=0\tcompass=none\tasked=0"
+        "\tcalibration=0,0,0,0,0,0,0\torder=0\tby=\torigin=0,0,0\torigin_known=0");
   // A newer program says more.
   const auto newer = parse_row("name=A\tindex=5\tcolour=blue");
   REQUIRE(newer);
@@ -212,6 +220,22 @@ TEST_CASE("robot now: its state in a word") {
   CHECK(state_of(robot) == "held");
   robot.lost = true;
   CHECK(state_of(robot) == "silent");
+}
+
+TEST_CASE("robot now: what it has said of its compass, and how often it was asked") {
+  cognitive::Fleet fleet;
+  const base::Time now{1s};
+  fleet.linked(0, "A", now);
+  CHECK(fleet.calibrate(0, now, true));
+  const mapper::server::Peer peer{0, "C0", "A", true};
+  const RobotNow before = cli::fleet::robot_now(fleet, peer);
+  CHECK(before.compass == Calibrator::Phase::asking);
+  CHECK(before.compass_asked == 1);
+  CHECK(before.calibration == mapper::link::Calibration{});
+  fleet.feed("[0]:A:{C,7,2,41,-57,152,1,2}\n", now);
+  const RobotNow after = cli::fleet::robot_now(fleet, peer);
+  CHECK(after.compass == Calibrator::Phase::done);
+  CHECK(after.calibration == mapper::link::Calibration{7, 2, 41, -57, 152, 1, 2});
 }
 
 TEST_CASE("robot now: pieces are torn sentences, and what is left over of others") {

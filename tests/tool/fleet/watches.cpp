@@ -1,12 +1,14 @@
 // What watches robots behind a central: their links, their pauses, and that they stand at the end.
 #include <chrono>
 #include <string>
+#include <unistd.h>
 
 #include <catch2/catch.hpp>
 
 #include "cli/fleet/keeper.hpp"
 #include "cli/fleet/link_watch.hpp"
 #include "cli/fleet/pausing.hpp"
+#include "tests/tool/captured.hpp"
 #include "tests/tool/fleet/played_line.hpp"
 
 namespace fleet_watches_test {
@@ -136,6 +138,32 @@ TEST_CASE("link watch: near its home it stays, and home is where it stood last w
   CHECK(line.take_told() == "go 3 0 0\ngo 3 180 50\n");
 }
 
+TEST_CASE(
+    "link watch: home is no place in the middle of a drive, or where it has stopped and is not located") {
+  struct Row {
+    const char* what;
+    bool located;
+    Progress progress;
+  };
+  for (const Row& row : {Row{"drives", true, Progress::said}, Row{"stopped", false, Progress::stopped}}) {
+    CAPTURE(row.what);
+    PlayedLine line;
+    auto& robot = standing(line);
+    LinkWatch watch;
+    CHECK_FALSE(watch.step(line, robot, true));
+    robot.update->x = 50;
+    robot.located = row.located;
+    robot.progress = row.progress;
+    CHECK_FALSE(watch.step(line, robot, true));
+    drives(robot, 100, 0, 0);
+    robot.advice = Advice::bad_link;
+    CHECK(watch.step(line, robot, true));
+    stands(robot);
+    CHECK_FALSE(watch.step(line, robot, true));
+    CHECK(line.take_told() == "go 3 0 0\ngo 3 180 100\n");
+  }
+}
+
 TEST_CASE("link watch: it calls back only what drives, what it may, and what it can") {
   struct Row {
     const char* what;
@@ -215,6 +243,13 @@ TEST_CASE("link watch: its words") {
   CHECK(words_of_link(robot) == "the link to A is bad: 62 % of its sentences come whole");
   robot.advice = Advice::far_away;
   CHECK(words_of_link(robot) == "A is almost out of the radio's range");
+  test::Captured err{STDERR_FILENO};
+  warn_of_link("goto", robot);  // without a link it has no bad one
+  robot.linked = true;
+  warn_of_link("goto", robot);
+  robot.advice = Advice::stay;
+  warn_of_link("goto", robot);
+  CHECK(err.text() == "goto: A is almost out of the radio's range; bring the central or the robot nearer\n");
 }
 
 TEST_CASE("keeper: says which robots are linked, lost and back, and whose links are bad") {

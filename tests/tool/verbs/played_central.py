@@ -36,7 +36,7 @@ class Robot:
         self.turn_s = 1.0
         self.turning_until = None
         self.blocked_cm = None   # stops after so many cm
-        self.slides_cm = 0       # so far ahead, once, from where it heard to stop to where it stands
+        self.slides_cm = 0       # so far ahead, once, from where it heard "stop" to where it stands
         self.told_to_stop = False
         self.bad_beyond_cm = None  # farther from where it was switched on half of its packets are lost
         self.chance = random.Random(7)

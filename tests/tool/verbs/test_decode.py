@@ -425,8 +425,15 @@ class Decode(Case):
                                + "(0.0) can0 605#1122\n" * 3)
         self.assertIn("5 of 8 frames contradict the spec of AMiRo (2 of no topic, 3 of wrong length, such as 605 with "
                       "2 bytes in place of 4)", err)
-        _, err = self.run_tool("decode", stdin="(0.0) can0 608#112233445566\n" * 19 + "(0.0) can0 7FF#11\n")
-        self.assertNotIn("contradict", err)
+        fits, foreign = "(0.0) can0 608#112233445566\n", "(0.0) can0 7FF#11\n"
+        for right, wrong, text in ((1, 9, "9 of 10 frames are of no topic of AMiRo: a log of another bus?"),
+                                   (2, 8, "8 of 10 frames contradict the spec of AMiRo (8 of no topic): the others may be of another robot, too"),
+                                   (9, 1, "1 of 10 frames contradicts the spec of AMiRo (1 of no topic): the others may be of another robot, too")):
+            self.assertIn(text, self.run_tool("decode", stdin=fits * right + foreign * wrong)[1])
+        for right, wrong in ((10, 1), (19, 1)):
+            _, err = self.run_tool("decode", stdin=fits * right + foreign * wrong)
+            self.assertNotIn("contradict", err)
+            self.assertNotIn("of no topic", err)
         _, err = self.run_tool("decode", "--topic", "ring", stdin=LOG, code=1)
         self.assertIn("none of 12 frames matches", err)
         # A frame that means nothing is none that was not chosen, and none that was decoded.

@@ -167,6 +167,18 @@ class WhetherARobotIsPaused(Line):
                 self.assertEqual("pause 0" in owner.heard, paused)
 
 
+class HowLongARobotMayBeSilent(Line):
+    def test_eight_seconds_behind_its_link(self):
+        """It measures its gyro first. The program that has the line is played; its robot has a link, and says nothing."""
+        owner = Owner(os.path.join(self.folder, "ocm"), self.central.path)
+        self.addCleanup(owner.close)
+        owner.robot = lambda heard: "index=0\taddress=C00000000000\tname=AVR\tlinked=1\n"
+        begin = time.monotonic()
+        _, err = self.run_tool("goto", "AVR", "90", "50", code=1)
+        self.assertGreaterEqual(time.monotonic() - begin, 8)
+        self.assertEqual(err, "amiroctl: goto: AVR has a link, but says nothing\n          switch it off and on: its program may hang\n")
+
+
 class AMapIsAskedForAtTheEnd(Joined):
     """The line is served until it is closed, and then what draws the map may be gone."""
 

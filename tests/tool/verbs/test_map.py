@@ -62,6 +62,7 @@ class Map(Case):
                                         "agreement"})
         self.assertEqual((figures["robots"], figures["calls_back"], figures["agreement"]["tolerance_m"]), (1, 0, 0.06))
         self.assertGreaterEqual(figures["seconds"], 12)
+        self.assertLess(figures["seconds"], 30)  # a program has no longer
         self.assertTrue(0 < figures["border_known"] <= 1, figures)
         self.assertLess(figures["free_m2"], 1.3)  # of 1.2 square metres
         self.assertGreaterEqual(figures["goals"], 1)
@@ -116,6 +117,18 @@ class Map(Case):
         self.assertLess(time.monotonic() - begin, 11)
         self.assertNotIn("{U,", "".join(self.avr.heard))
         self.check_drawn(file)
+
+    def test_a_robot_that_is_lost_and_is_back_is_said_once_each(self):
+        tool = self.start("map", self.path("a.pgm"), "--watch", "--scan", "200ms")
+
+        def said():
+            return next(line for line in tool.stderr if "AVR" in line)
+        self.wait_until(lambda: self.avr.confirmed)
+        self.avr.silent = True  # for longer than its deadline
+        self.assertEqual(said(), "map: AVR is lost\n")
+        self.avr.silent = False
+        self.assertEqual(said(), "map: AVR is back\n")
+        self.interrupt(tool)
 
     def test_a_beam_that_ends_at_another_robot_is_one_of_its_four(self):
         self.avr.x = self.avr.y = 0.5
