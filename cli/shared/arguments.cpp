@@ -1,6 +1,7 @@
 #include "cli/shared/arguments.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cstdio>
 #include <limits>
 #include <map>
@@ -128,8 +129,13 @@ CLI::Option* only_numbers(CLI::Option* option, std::string_view what, std::strin
                                      ""});
   return add_check(option, "", [what, remedy](const std::string& text) {
     Number number{};
-    if (CLI::detail::lexical_cast(text, number)) return std::string{};
     const bool digits = !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
+    bool taken = CLI::detail::lexical_cast(text, number);
+    if constexpr (std::is_unsigned_v<Number>) {  // of 64 bits CLI11 looks neither at the sign nor at the size
+      taken = taken && !text.starts_with('-');
+      if (digits) taken = std::from_chars(text.data(), text.data() + text.size(), number).ec == std::errc{};
+    }
+    if (taken) return std::string{};
     return digits ? wrong(text, "too large",
                           fmt::format("the greatest is {}", std::numeric_limits<Number>::max()))
                   : wrong(text, what, remedy);
@@ -426,8 +432,8 @@ bool Option::is_decided() const {
 
 std::optional<Misuse> Option::misuse_of(const std::string& text) const {
   try {
+    std::string value = text;  // what a check changes, as leading zeros, the next one reads so
     for (int i = 0;; ++i) {
-      std::string value = text;
       if (const std::string error = (*option_->get_validator(i))(value); !error.empty()) return split(error);
     }
   } catch (const CLI::OptionNotFound&) {  // that was the last one

@@ -1,6 +1,7 @@
 // What a command line comes to, before any verb reads its words.
 #include "cli/shared/arguments.hpp"
 
+#include <cstdint>
 #include <string>
 #include <unistd.h>
 #include <utility>
@@ -55,6 +56,44 @@ TEST_CASE("arguments: a negative number without a zero is a number, and no optio
     CHECK(found.said.empty());
   }
   CHECK(take({"go", "-.x"}).outcome == Program::Outcome::refused);
+}
+
+TEST_CASE("arguments: a whole number has no sign, and the room of its option") {
+  const char* const whole = "not a whole number\n          write a whole number, such as 10\n";
+  const auto typed = [](const std::string& text, auto& number) {
+    Program program{"amiroctl", "a program", "1", "", "begin with go"};
+    program.add_verb("go", Program::About::itself, [&](Verb verb) {
+      verb.describe("goes", "Verbs", "  amiroctl go --times 2");
+      verb.add_option("--times", number, "how often");
+    });
+    std::vector<std::string> words{"amiroctl", "go", "--times=" + text};
+    std::vector<char*> pointers;
+    for (std::string& word : words) pointers.push_back(word.data());
+    pointers.push_back(nullptr);
+    test::Captured said{STDERR_FILENO};
+    static_cast<void>(program.run(static_cast<int>(words.size()), pointers.data()));
+    return said.text();
+  };
+  std::uint64_t wide = 0;
+  std::uint32_t narrow = 0;
+  for (const char* const text : {"-1", "-0", "-18446744073709551615", "x", "1x", "1.5"}) {
+    CAPTURE(text);
+    CHECK_THAT(typed(text, wide), Catch::Contains(whole));
+    CHECK_THAT(typed(text, narrow), Catch::Contains(whole));
+  }
+  CHECK_THAT(typed("18446744073709551616", wide),
+             Catch::Contains("too large\n          the greatest is 18446744073709551615\n"));
+  CHECK_THAT(typed("99999999999999999999", wide), Catch::Contains("too large"));
+  CHECK_THAT(typed("4294967296", narrow),
+             Catch::Contains("too large\n          the greatest is 4294967295\n"));
+  CHECK(typed("18446744073709551615", wide).empty());
+  CHECK(wide == 18'446'744'073'709'551'615U);
+  CHECK(typed("4294967295", narrow).empty());
+  CHECK(narrow == 4'294'967'295U);
+  CHECK(typed("0010", wide).empty());
+  CHECK(wide == 10);
+  CHECK(typed("0", narrow).empty());
+  CHECK(narrow == 0);
 }
 
 TEST_CASE("arguments: the verb stands behind the options of the program, and their values") {

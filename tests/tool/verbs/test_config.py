@@ -183,6 +183,7 @@ class Config(harness.Case):
                 ('[sim]\nboards = "paper"', "boards paper: unknown value", "one of: host, qemu"),
                 ('[sim]\nrobots = 0', "robots 0: out of range", "write a number from 1 to 128"),
                 ('[sim]\nrobots = "2"', "robots '2': not a number", "write a whole number from 1 to 128, without quotes"),
+                ('[sim]\nrobots = "08"', "robots '08': not a number", "write a whole number from 1 to 128, without quotes"),
                 ('[sim]\nradio-loss = 1.5', "radio-loss 1.5: out of range", "write a number from 0 to 1"),
                 ('[listen]\ncount = -1', "count -1: not above zero", "write a number above zero, such as 10"),
                 ('[listen]\ncount = 1.5', "count 1.5: not a whole number", "write a whole number, such as 10"),
