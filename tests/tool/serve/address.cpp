@@ -1,16 +1,103 @@
 #include "cli/serve/address.hpp"
 
+#include <fcntl.h>
+#include <filesystem>
+#include <fstream>
+#include <poll.h>
+#include <string>
+#include <sys/stat.h>
+#include <system_error>
+#include <unistd.h>
+
 #include <catch2/catch.hpp>
+
+#include "ocm/host/descriptor.hpp"
+
+#include "tool/captured.hpp"
+#include "tool/environment.hpp"
 
 namespace serve_address_test {
 
+using ocm::cli::serve::open_in_browser;
 using ocm::cli::serve::page_address;
+using ocm::test::Captured;
+using ocm::test::Variable;
 
 TEST_CASE("address: token and what is shown are behind the #") {
   CHECK(page_address("http://127.0.0.1:8484/", "", "") == "http://127.0.0.1:8484/");
   CHECK(page_address("http://h/", "0f", "") == "http://h/#0f");
   CHECK(page_address("http://h/", "", "map") == "http://h/#map");
   CHECK(page_address("http://h/", "0f", "plot=/gyro.z") == "http://h/#0f&plot=/gyro.z");
+}
+
+/// A folder with an xdg-open that says through a pipe what it gets: its arguments, and its streams.
+class Browser {
+ public:
+  Browser() {
+    REQUIRE(::mkdtemp(folder_.data()) != nullptr);
+    const std::string said = folder_ + "/said", program = folder_ + "/xdg-open";
+    REQUIRE(::mkfifo(said.c_str(), 0600) == 0);
+    said_ = ocm::host::Descriptor{::open(said.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC)};
+    REQUIRE(said_.get() >= 0);
+    std::ofstream{program} << "#!/bin/sh\nexec 3>" << said << "\necho \"$# $*\" >&3\n"
+                           << "for stream in 0 1 2; do readlink /proc/$$/fd/$stream >&3; done\n";
+    REQUIRE(::chmod(program.c_str(), 0700) == 0);
+  }
+  ~Browser() {
+    std::error_code none;
+    std::filesystem::remove_all(folder_, none);
+  }
+  Browser(const Browser&) = delete;
+  Browser& operator=(const Browser&) = delete;
+
+  [[nodiscard]] const std::string& folder() const { return folder_; }
+  /// All that it says to its end; what comes within 20 s.
+  [[nodiscard]] std::string says() const {
+    std::string text;
+    pollfd waits{said_.get(), POLLIN, 0};
+    while (::poll(&waits, 1, 20'000) == 1) {
+      char piece[256];
+      const ssize_t size = ::read(said_.get(), piece, sizeof piece);
+      if (size <= 0) break;
+      text.append(piece, static_cast<std::size_t>(size));
+    }
+    return text;
+  }
+
+ private:
+  std::string folder_ = (std::filesystem::temp_directory_path() / "ocm-browser-XXXXXX").string();
+  ocm::host::Descriptor said_;
+};
+
+TEST_CASE("address: a browser gets it as it is, and none of this program's streams") {
+  for (const char* const display : {"DISPLAY", "WAYLAND_DISPLAY"}) {
+    INFO(display);
+    const Browser browser;
+    const Variable no_x{"DISPLAY", ""}, no_wayland{"WAYLAND_DISPLAY", ""};
+    const Variable shown{display, ":7"};
+    const Variable path{"PATH", browser.folder() + ":/usr/bin:/bin"};
+    Captured errors{STDERR_FILENO};
+    open_in_browser("http://h/#0f&plot=/gyro.z");
+    CHECK(errors.text().empty());
+    CHECK(browser.says() == "1 http://h/#0f&plot=/gyro.z\n/dev/null\n/dev/null\n/dev/null\n");
+  }
+}
+
+TEST_CASE("address: why no browser opens it") {
+  const Browser browser;
+  const Variable no_x{"DISPLAY", ""}, no_wayland{"WAYLAND_DISPLAY", ""};
+  {
+    const Variable path{"PATH", browser.folder()};
+    Captured errors{STDERR_FILENO};
+    open_in_browser("http://h/");
+    CHECK(errors.text() == "serve: there is no display: open the address in a browser elsewhere\n");
+  }
+  const Variable display{"DISPLAY", ":7"};
+  const Variable path{"PATH", "/nonexistent"};
+  Captured errors{STDERR_FILENO};
+  open_in_browser("http://h/");
+  CHECK(errors.text() ==
+        "serve: xdg-open cannot be started: No such file or directory; open the address by hand\n");
 }
 
 }  // namespace serve_address_test

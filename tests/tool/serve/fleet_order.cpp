@@ -38,6 +38,8 @@ TEST_CASE("fleet order: what is none says what would be one") {
     CHECK(order.error.size() > 10);
   }
   CHECK(fleet_order_of(R"({"robot":"A","order":"fly"})").error.find("unknown order 'fly'") == 0);
+  CHECK(fleet_order_of(R"({"robot":"A","order":""})").error.find("unknown order ''") == 0);
+  CHECK(fleet_order_of(R"({"robot":"A","order":"go"})").error.find("unknown order 'go'") == 0);
   CHECK(fleet_order_of(R"({"robot":"A","x_m":1001,"y_m":1})").error.find("x_m '1001'") == 0);
 }
 

@@ -134,7 +134,10 @@ TEST_CASE("foxglove: what a client publishes") {
   REQUIRE(published);
   CHECK(published->channel == 258);
   CHECK(published->payload == "{}");
-  CHECK(parse_binary("\x01\x02\x01\x00\x00"sv)->payload.empty());
+  const auto without = parse_binary("\x01\x02\x01\x00\x00"sv);
+  REQUIRE(without);
+  CHECK(without->channel == 258);
+  CHECK(without->payload.empty());
   CHECK_FALSE(parse_binary("\x01\x02\x01\x00"sv));
   CHECK_FALSE(parse_binary("\x02\x02\x01\x00\x00{}"sv));
   CHECK_FALSE(parse_binary(""sv));

@@ -2,6 +2,7 @@
 
 #ifdef OCM_HAS_WEBSOCKETS
 
+#include <chrono>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -10,6 +11,7 @@
 #include <string_view>
 #include <unistd.h>
 #include <utility>
+#include <vector>
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
@@ -73,6 +75,67 @@ TEST_CASE("live bus: what is lost of a bus is in its figures from the first mome
   CHECK(said[State::boards]["findings"][0]["what"] == "3 frames lost on the way to this program");
   CHECK(said[State::bounds]["rows"] == Json::array());
   CHECK(said[State::operator_]["running"] == false);
+}
+
+/// Keeps what is sent, and has a frame of the gyroscope come behind each.
+class TakingBus final : public transport::Bus {
+ public:
+  explicit TakingBus(std::vector<can::Frame>& sent) : sent_(&sent) {}
+
+  [[nodiscard]] std::string_view name() const override { return "can97"; }
+  base::Result<bool> send(const can::Frame& frame) override {
+    sent_->push_back(frame);
+    comes_ = true;
+    return true;
+  }
+  base::Result<can::Received> receive(base::Duration) override {
+    if (!std::exchange(comes_, false)) return base::Error::timed_out;
+    can::Frame frame;
+    frame.id = 0x608;
+    frame.dlc = 6;
+    frame.data[0] = 4;
+    return can::Received{base::Time{std::chrono::hours{500'000}}, frame};
+  }
+  transport::Outcome<void> subscribe(std::span<const can::Filter>) override { return {}; }
+  [[nodiscard]] int descriptor() const override { return -1; }
+  [[nodiscard]] const transport::BusCounters& counters() const override { return counters_; }
+  [[nodiscard]] const transport::Failure& failure() const override { return failure_; }
+
+ private:
+  std::vector<can::Frame>* sent_;
+  bool comes_ = false;
+  transport::BusCounters counters_;
+  transport::Failure failure_;
+};
+
+TEST_CASE("live bus: what a viewer commands goes to the bus, and what comes from there to viewers") {
+  const spec::Model model;
+  ServeOptions options;
+  options.commands = true;
+  options.over = [looks = 0]() mutable { return looks++ == 2; };  // at once, and then for what is asked
+  PageServer server{amiro::catalogue, model, std::move(options), {"can97", true, true}, {"can97"}, 500'000};
+  test::Captured address{STDOUT_FILENO};
+  server.open();
+  address.text();
+  const ViewerId viewer = server.viewers().add();
+  for (const foxglove::Channel& channel : server.channels().all())
+    if (channel.topic == "/led_1" || channel.topic == "/gyroscope" || channel.topic == "/ocm/bus")
+      REQUIRE(server.viewers().subscribe(viewer, {channel.id, channel.id}).empty());
+  REQUIRE(server.orders().put({Order::Kind::publish, viewer, "/led_1", R"({"red":7})"}));
+  REQUIRE(server.orders().put({Order::Kind::publish, viewer, "/motors", R"({"x":"fast"})"}));
+  std::vector<can::Frame> sent;
+  cli::Session session;
+  CHECK(serve_bus(server, session, std::make_unique<TakingBus>(sent)) == 0);
+  REQUIRE(sent.size() == 1);
+  CHECK(sent[0].data[0] == 7);
+  std::map<std::string, Json> said;
+  while (const auto message = server.viewers().next(viewer, base::Time{}))
+    said[message->binary ? server.channels().topic(message->head[1]) : std::string{}] =
+        Json::parse(*message->payload);
+  CHECK(said["/led_1"] == Json{{"red", 7}, {"green", 0}, {"blue", 0}});
+  CHECK(said["/gyroscope"]["x"].get<double>() == Approx(4 * 0.0175));
+  CHECK(said["/ocm/bus"]["buses"][0]["name"] == "can97");
+  CHECK(said[""]["message"].get<std::string>().starts_with("/motors: "));
 }
 
 }  // namespace serve_live_bus_test

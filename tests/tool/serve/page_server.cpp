@@ -256,6 +256,44 @@ TEST_CASE("page server: figures of the bus, and frames that it has lost since it
   desk.server.close();
 }
 
+TEST_CASE("page server: its address has a token where commands take one, or looking, and what is shown") {
+  const auto address = [](bool commands, bool to_view, std::string shows) {
+    const spec::Model model;
+    ServeOptions options;
+    options.commands = commands;
+    options.web.token_to_view = to_view;
+    options.shows = std::move(shows);
+    PageServer server{amiro::catalogue,         model,    std::move(options),
+                      {"can0", true, commands}, {"can0"}, 500'000};
+    CHECK(server.takes_commands() == commands);
+    test::Captured out{STDOUT_FILENO};
+    server.open();
+    server.close();
+    return out.text();
+  };
+  CHECK_THAT(address(false, false, ""), Catch::Matches("http://127\\.0\\.0\\.1:[0-9]+/\n"));
+  CHECK_THAT(address(true, false, ""), Catch::Matches("http://127\\.0\\.0\\.1:[0-9]+/#[0-9a-f]{32}\n"));
+  CHECK_THAT(address(false, true, ""), Catch::Matches("http://127\\.0\\.0\\.1:[0-9]+/#[0-9a-f]{32}\n"));
+  CHECK_THAT(address(true, true, "map"), Catch::Matches("http://127\\.0\\.0\\.1:[0-9]+/#[0-9a-f]{32}&map\n"));
+}
+
+TEST_CASE("page server: at its end it says how much was lost of viewers that were too slow") {
+  for (const int lost : {0, 2, 3}) {
+    Desk desk;
+    test::Captured address{STDOUT_FILENO};
+    desk.server.open();
+    address.text();
+    for (int i = 0; i < 64 + lost; ++i) desk.server.viewers().tell(desk.viewer, "a text");
+    while (desk.server.viewers().next(desk.viewer, base::Time{})) {
+    }
+    test::Captured errors{STDERR_FILENO};
+    desk.server.close();
+    CHECK(errors.text() == (lost == 0 ? std::string{}
+                                      : "serve: viewers that were too slow have lost " +
+                                            std::to_string(lost) + " messages\n"));
+  }
+}
+
 TEST_CASE("page server: what a robot is, and what is said to all") {
   Desk desk;
   test::Captured address{STDOUT_FILENO};

@@ -129,6 +129,23 @@ TEST_CASE("serve: a ring is a scan around the robot's frame") {
   CHECK(scan["intensities"][4].get<double>() == Approx(0));
 }
 
+TEST_CASE("serve: a ring of one sensor ends where it begins") {
+  protocol::Topic ring = topic_of(protocol::Role::ring);
+  ring.frames = ring.frames.first(1);
+  const protocol::Catalogue catalogue{"one", 500'000, amiro::catalogue.boards, {&ring, 1}};
+  Scenes scenes{catalogue, model_with_ring(), std::vector<std::string>{"can0"}, 0};
+  const std::vector<std::uint8_t> bytes = counts({offsets()[0]});
+  std::vector<Json> scans;
+  scenes.take(
+      client::Sample{&ring, protocol::default_priority, base::Time{1s}, bytes}, 0,
+      [](std::uint32_t) { return true; },
+      [&](const Scenes::Message& message) { scans.push_back(Json::parse(message.payload)); });
+  REQUIRE(scans.size() == 1);
+  CHECK(scans[0]["start_angle"].get<double>() == Approx(2));
+  CHECK(scans[0]["end_angle"].get<double>() == Approx(2));
+  CHECK(scans[0]["ranges"].size() == 1);
+}
+
 TEST_CASE("serve: offsets are the least of averages, are learnt unseen, and are forgotten with the log") {
   Shown shown;
   const protocol::Topic& ring = topic_of(protocol::Role::ring);

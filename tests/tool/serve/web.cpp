@@ -3,13 +3,16 @@
 #ifdef OCM_HAS_WEBSOCKETS
 
 #include <arpa/inet.h>
+#include <array>
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <poll.h>
 #include <string>
 #include <string_view>
 #include <sys/socket.h>
+#include <tuple>
 #include <unistd.h>
 #include <vector>
 
@@ -19,12 +22,20 @@
 
 #include "cli/serve/assets.hpp"
 #include "cli/serve/sessions.hpp"
+#include "tool/thread_signals.hpp"
 
 namespace ocm::cli::serve {
 
-/// The page is no part of this program.
+/// The page is no part of this program: two files stand for it, the second longer than what is sent at once.
 std::span<const Asset> assets() noexcept {
-  return {};
+  static constexpr auto letters = [] {
+    std::array<char, 40'000> all{};
+    for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<char>('a' + i / 7 % 26);
+    return all;
+  }();
+  static constexpr std::array<Asset, 2> files{
+      {{"index.html", "<p>a page</p>"}, {"long.css", {letters.data(), letters.size()}}}};
+  return files;
 }
 
 }  // namespace ocm::cli::serve
@@ -62,6 +73,8 @@ class Client {
     }
     return heard_;
   }
+  /// What came so far is not looked at again.
+  void forget() { heard_.clear(); }
 
  private:
   int socket_ = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
@@ -197,6 +210,149 @@ TEST_CASE("web: whatever is refused is counted") {
              Catch::StartsWith("HTTP/1.1 404"));
   CHECK((*server.web)->refused() == 4);
   CHECK(server.viewers.count() == 0);
+}
+
+TEST_CASE("web: each time that it is woken it sends what has come since") {
+  Server server;
+  Client client{port_of(server.place)};
+  server.greets(client);
+  for (const char* const text : {"the first words", "the second words", "the third words"}) {
+    server.viewers.tell(1, text);
+    (*server.web)->wake();
+    REQUIRE(client.hear(text).find(text) != std::string::npos);
+  }
+}
+
+TEST_CASE(
+    "web: files go out whole, one after the other on a connection, and of HEAD only what is said of them") {
+  Server server;
+  const auto ask = [&](const Client& client, const std::string& what) {
+    client.say(what + " HTTP/1.1\r\nHost: " + server.place + "\r\n\r\n");
+  };
+  Client client{port_of(server.place)};
+  for (const char* const path : {"/", "/index.html"}) {
+    ask(client, "HEAD "s + path);
+    const std::string head = client.hear("\r\n\r\n");
+    CHECK(head.starts_with("HTTP/1.1 200 "));
+    CHECK(head.find("text/html; charset=utf-8\r\n") != std::string::npos);
+    ask(client, "GET "s + path);
+    const std::string page = client.hear("</p>");
+    CHECK(page.starts_with(head + "HTTP/1.1 200 "));  // nothing is between the two
+    CHECK(page.find("text/html; charset=utf-8\r\n", head.size()) != std::string::npos);
+    CHECK(page.ends_with("\r\n\r\n<p>a page</p>"));
+    client.forget();
+  }
+  ask(client, "GET /long.css");
+  const std::string long_one{assets()[1].content};
+  const std::string all = client.hear(long_one);
+  CHECK(all.starts_with("HTTP/1.1 200 "));
+  CHECK(all.find("text/css; charset=utf-8\r\n") != std::string::npos);
+  CHECK(all.ends_with("\r\n\r\n" + long_one));
+  CHECK((*server.web)->refused() == 0);
+}
+
+TEST_CASE("web: by which names a request may mean this server") {
+  Server server;
+  const auto answer = [&](const std::string& host) {
+    Client client{port_of(server.place)};
+    client.say("GET / HTTP/1.1\r\nHost: " + host + "\r\n\r\n");
+    return client.hear("\n\r\n").substr(0, 13);
+  };
+  for (const char* const host :
+       {"127.0.0.1", "127.0.0.1:1", "127.0.0.1:12345", "localhost", "[::1]", "[::1]:80"})
+    CHECK(answer(host) == "HTTP/1.1 200 ");
+  for (const char* const host :
+       {"127.0.0.1:80x", "127.0.0.1:123456", "[::1]x", "evil.example", "evil.example:80"})
+    CHECK(answer(host) == "HTTP/1.1 403 ");
+}
+
+/// Says to each viewer whether it may command, and that it has heard what it says.
+struct Noting final : Listener {
+  explicit Noting(Viewers& all) : viewers(&all) {}
+  void opened(ViewerId viewer, bool commands) override {
+    viewers->tell(viewer, commands ? "it may command" : "it may look");
+  }
+  void gone(ViewerId) override {}
+  void text(ViewerId viewer, std::string_view message) override {
+    viewers->tell(viewer, "a text: " + std::string{message});
+  }
+  void binary(ViewerId viewer, std::string_view message) override {
+    viewers->tell(viewer, "bytes: " + std::string{message});
+  }
+  Viewers* viewers;
+};
+
+TEST_CASE("web: who shows the token may command, and who shows another one is told so") {
+  constexpr const char* other = "the token of this address is not that of this server, so you only look";
+  constexpr const char* none = "this server takes no commands: it was started without --allow-commands";
+  const auto said = [](const std::string& token, const std::string& shown) {
+    Viewers viewers{1};
+    Noting noting{viewers};
+    WebOptions options;
+    options.token = token;
+    const auto web = Web::open(options, viewers, noting);
+    REQUIRE(web);
+    const std::string place = place_of(**web);
+    Client client{port_of(place)};
+    client.say("GET /" + shown + upgrade(place).substr(5));
+    client.hear("it may ");
+    client.say(frame(1, "here"));
+    return client.hear("a text: here");
+  };
+  for (const auto& [token, shown, may, why] :
+       {std::tuple{"0123456789", "?token=0123456789", "it may command", ""},
+        {"0123456789", "", "it may look", ""},
+        {"0123456789", "?token=0123456788", "it may look", other},
+        {"0123456789", "?token=1123456789", "it may look", other},
+        {"0123456789", "?token=012345678", "it may look", other},
+        {"0123456789", "?token=01234567890", "it may look", other},
+        {"", "?token=0123456789", "it may look", none},
+        {"", "", "it may look", ""}}) {
+    INFO(token << " " << shown);
+    const std::string all = said(token, shown);
+    CHECK(all.find(may) != std::string::npos);
+    CHECK((all.find("only look") != std::string::npos) == (std::string{why} == other));
+    CHECK((all.find("takes no commands") != std::string::npos) == (std::string{why} == none));
+    CHECK(all.find(why) != std::string::npos);
+  }
+}
+
+TEST_CASE("web: pieces of a message are put together, and one that is no text ends the connection") {
+  Viewers viewers{1};
+  Noting noting{viewers};
+  const auto web = Web::open({}, viewers, noting);
+  REQUIRE(web);
+  const std::string place = place_of(**web);
+  Client client{port_of(place)};
+  client.say(upgrade(place));
+  client.hear("it may look");
+  std::string first = frame(1, "one ");
+  first[0] = '\x01';  // and more follows
+  client.say(first);
+  client.say(frame(0, "two"));
+  CHECK(client.hear("a text: one two").find("a text: one two") != std::string::npos);
+  client.say(frame(2, "three"));
+  CHECK(client.hear("bytes: three").find("bytes: three") != std::string::npos);
+  client.forget();
+  client.say(frame(1, "\xFF\xFE"));
+  CHECK(client.hear("\x88").find("a text") == std::string::npos);  // it hangs up [RFC 6455 8.1]
+}
+
+TEST_CASE("web: signals are not for the thread that serves") {
+  const auto before = ocm::test::kept_away();
+  Server server;
+  Client client{port_of(server.place)};
+  server.greets(client);
+  std::size_t others = 0;
+  for (const auto& [thread, signals] : ocm::test::kept_away()) {
+    if (const auto known = before.find(thread); known != before.end()) {
+      CHECK(signals == known->second);
+    } else {
+      CHECK(ocm::test::keeps_all_away(signals));
+      ++others;
+    }
+  }
+  CHECK(others == 1);
 }
 
 TEST_CASE(
