@@ -43,8 +43,6 @@ class FleetWatch {
   FleetWatch(const FleetWatch&) = delete;
   FleetWatch& operator=(const FleetWatch&) = delete;
 
-  /// The line, or who has it: for the page's title.
-  [[nodiscard]] const std::string& source() const noexcept { return source_; }
   /// `woken` is called when there is something for viewers; of the watch's thread. Once.
   void run(std::function<void()> woken);
 

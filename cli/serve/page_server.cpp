@@ -79,7 +79,8 @@ void PageServer::close() {
   fleet_.reset();
   web_.reset();
   if (viewers_.lost() != 0)
-    remark(fmt::format("serve: viewers that were too slow have lost {} messages", viewers_.lost()));
+    remark(
+        fmt::format("serve: viewers that were too slow have lost {}", counted(viewers_.lost(), "message")));
 }
 
 void PageServer::take(const log::Entry& entry, const log::Interfaces& interfaces) {

@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "ocm/client/counted.hpp"
+
 namespace ocm::cli::serve {
 namespace {
 
@@ -154,8 +156,8 @@ std::optional<Viewers::Outgoing> Viewers::word_of_loss(Viewer& viewer, base::Tim
   if (viewer.lost == viewer.told || (viewer.told != 0 && now - viewer.told_at < loss_interval)) return {};
   viewer.told = viewer.lost;
   viewer.told_at = now;
-  const std::string text =
-      fmt::format("this viewer is too slow for what it asks: it has lost {} messages", viewer.lost);
+  const std::string text = fmt::format("this viewer is too slow for what it asks: it has lost {}",
+                                       client::counted(viewer.lost, "message"));
   return Outgoing{
       false,
       {},

@@ -199,7 +199,8 @@ struct Web::State {
     ++refused;
     connection.closes = true;
     connection.own_body = std::move(text) + "\n";
-    return respond(wsi, connection, status, "text/plain; charset=utf-8", connection.own_body);
+    return respond(wsi, connection, status, "text/plain; charset=utf-8", connection.own_body,
+                   lws_hdr_total_length(wsi, WSI_TOKEN_HEAD_URI) <= 0);
   }
   int give(lws* wsi, Connection& connection, std::string_view path) {
     const bool head = lws_hdr_total_length(wsi, WSI_TOKEN_HEAD_URI) > 0;

@@ -325,7 +325,7 @@ TEST_CASE(
   const auto said = all(viewers, viewer);
   REQUIRE(said.size() == 4);
   CHECK(said[0] == "answer");
-  CHECK(said[1].find("it has lost 1 messages") != std::string::npos);
+  CHECK(said[1].find("it has lost 1 message\"") != std::string::npos);
   CHECK(said[2] == "2:state");
   CHECK(said[3] == "1:2");
 }

@@ -189,6 +189,14 @@ TEST_CASE("web: a viewer that hangs up has gone, and so has one that is there at
   CHECK(server.viewers.count() == 0);
 }
 
+TEST_CASE("web: what is refused of HEAD has no body, as nothing of HEAD has") {
+  Server server;
+  Client client{port_of(server.place)};
+  client.say("HEAD /none HTTP/1.1\r\nHost: " + server.place + "\r\n\r\n");
+  const std::string all = client.hear("no such page");  // until the server hangs up
+  CHECK_THAT(all, Catch::StartsWith("HTTP/1.1 404") && Catch::EndsWith("\r\n\r\n"));
+}
+
 TEST_CASE("web: whatever is refused is counted") {
   Server server;
   CHECK((*server.web)->refused() == 0);

@@ -920,25 +920,6 @@ print(lost, flush=True)
             self.assertIsNotNone(viewer.message())
         self.assertEqual(pings, [])
 
-    def test_a_viewer_that_is_silent_for_long_is_asked_whether_it_is_there(self):
-        """After 20 s in which nothing comes from it, by a ping; one that answers stays."""
-        self.start_sim("--frozen")
-        _, port, _ = self.serve()
-        viewer = self.viewer(port, timeout=60)
-        begin = time.monotonic()
-        pings = []
-        send = viewer.send_frame
-
-        def answer(opcode, payload, final=True):
-            send(opcode, payload, final)
-            if opcode == 10:
-                pings.append(time.monotonic() - begin)
-                viewer.ask(op="nothing")
-        viewer.send_frame = answer
-        self.assertIn("'nothing' is nothing that this server does", viewer.text("status", limit=90)["message"])
-        self.assertEqual(len(pings), 1)
-        self.assertGreater(pings[0], 10)
-
     def test_the_bus_goes_away(self):
         simulator = self.start_sim("--frozen")
         server, port, _ = self.serve()
