@@ -39,8 +39,9 @@ class Browser {
     REQUIRE(::mkfifo(said.c_str(), 0600) == 0);
     said_ = ocm::host::Descriptor{::open(said.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC)};
     REQUIRE(said_.get() >= 0);
-    std::ofstream{program} << "#!/bin/sh\nexec 3>" << said << "\necho \"$# $*\" >&3\n"
-                           << "for stream in 0 1 2; do readlink /proc/$$/fd/$stream >&3; done\n";
+    std::ofstream{program}
+        << "#!/bin/sh\nexec 3>" << said << "\necho \"$# $*\" >&3\n"
+        << "for stream in 0 1 2; do its=$(readlink /proc/$$/fd/$stream); echo \"$its\" >&3; done\n";
     REQUIRE(::chmod(program.c_str(), 0700) == 0);
   }
   ~Browser() {

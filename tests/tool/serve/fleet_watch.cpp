@@ -43,7 +43,7 @@ using Json = nlohmann::json;
 using Strings = std::vector<std::string>;
 
 /// A program that has a central's line, for others that join it, one after the other. It has its robots do
-/// at once what they are told.
+/// at once what is ordered.
 class Owner {
  public:
   Owner(const std::string& path, std::vector<RobotNow> robots)

@@ -290,7 +290,7 @@ struct Noting final : Listener {
   Viewers* viewers;
 };
 
-TEST_CASE("web: who shows the token may command, and who shows another one is told so") {
+TEST_CASE("web: who shows the token may command, and to who shows another one it is said") {
   constexpr const char* other = "the token of this address is not that of this server, so you only look";
   constexpr const char* none = "this server takes no commands: it was started without --allow-commands";
   const auto said = [](const std::string& token, const std::string& shown) {
