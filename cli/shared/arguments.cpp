@@ -298,12 +298,15 @@ Option Option::range(unsigned least, unsigned most) const {
 }
 
 Option Option::positive() const {
-  add_check(option_, "", [](const std::string& text) {
-    double number = 0;
-    return CLI::detail::lexical_cast(text, number) && number > 0
-               ? std::string{}
-               : wrong(text, "not above zero", "write a number above zero, such as 10");
-  });
+  // Before what any number is asked: a sign alone would be no whole number.
+  option_->transform(CLI::Validator{[](std::string& text) {
+                                      double number = 0;
+                                      return !CLI::detail::lexical_cast(text, number) || number > 0
+                                                 ? std::string{}
+                                                 : wrong(text, "not above zero",
+                                                         "write a number above zero, such as 10");
+                                    },
+                                    ""});
   return takes(
       accepted_whole(1, std::numeric_limits<std::uint64_t>::max(), "a whole number that is at least 1"));
 }
