@@ -10,7 +10,7 @@
                                    labels LABELS does, as `ctest -LE LABELS -R TESTS` chooses them: on stdout, a line each.
     runs.py without BUILD LABELS TESTS
                                    all but these tests: on stdout a regular expression of them for `ctest -E`, then the
-                                   targets of `all`, a line each, but for programs that no other test runs.
+                                   targets of `all`, a line each, without the programs that only these tests run.
     runs.py report [--left-out FILE]... JUNIT...
                                    of ctest's --output-junit: how many tests passed, which failed, which were skipped, whole
                                    or in part, which took longest; of the FILEs, which CMake has left out because a program is

@@ -261,7 +261,14 @@ bool LogFile::finish() {
   if (state_->finished) return state_->failure.what.empty();
   if (!state_->broken) state_->whole([&] { state_->writer->finish(state_->bytes); });
   state_->finished = true;  // without memory for its end it is not: what came before is written next time
-  bool done = state_->empty_out(Packer::Until::ended);
+  bool done = false;
+  try {
+    done = state_->empty_out(Packer::Until::ended);
+  } catch (const std::bad_alloc&) {  // of what packs
+    if (state_->path != "-") ::close(state_->descriptor);
+    state_->delete_empty();
+    throw;
+  }
   if (state_->path != "-" && ::close(state_->descriptor) != 0 && done) done = state_->failed("write");
   if (!done) state_->delete_empty();
   return done;

@@ -102,7 +102,7 @@ class Judge {
                (any ? std::string{"no configuration that it leads from asks for"}
                     : named(f.configuration) + " does not ask for");
     }
-    return "no configuration that it leads from asks for all that its monitor looks at";
+    return "its monitor looks at topics that no one configuration asks for together";
   }
   [[nodiscard]] std::string remedy(const reflective::Finding& f) const {
     const auto& tables = file_.tables;

@@ -119,6 +119,16 @@ CLI::Option* add_check(CLI::Option* option, std::string_view description,
                                       std::string{description}});
 }
 
+/// Decimal, or hexadecimal behind 0x, and nothing else.
+template <class Number>
+std::errc read_whole(std::string_view text, Number& number) {
+  const bool hexadecimal = text.starts_with("0x") || text.starts_with("0X");
+  if (hexadecimal) text.remove_prefix(2);
+  const char* const all = text.data() + text.size();
+  const auto [end, error] = std::from_chars(text.data(), all, number, hexadecimal ? 16 : 10);
+  return error != std::errc::invalid_argument && end != all ? std::errc::invalid_argument : error;
+}
+
 template <class Number>
 CLI::Option* only_numbers(CLI::Option* option, std::string_view what, std::string_view remedy) {
   if (std::is_integral_v<Number>)  // CLI11 would read 010 as C++ does: 8
@@ -130,15 +140,18 @@ CLI::Option* only_numbers(CLI::Option* option, std::string_view what, std::strin
   return add_check(option, "", [what, remedy](const std::string& text) {
     Number number{};
     const bool digits = !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
-    bool taken = CLI::detail::lexical_cast(text, number);
-    if constexpr (std::is_unsigned_v<Number>) {  // of 64 bits CLI11 looks neither at the sign nor at the size
-      taken = taken && !text.starts_with('-');
-      if (digits) taken = std::from_chars(text.data(), text.data() + text.size(), number).ec == std::errc{};
+    bool taken = false, too_large = digits;
+    if constexpr (std::is_unsigned_v<Number>) {  // of 64 bits CLI11 looks neither at signs nor at the size
+      const auto error = read_whole(text, number);
+      taken = error == std::errc{};
+      too_large = error == std::errc::result_out_of_range;
+    } else {
+      taken = CLI::detail::lexical_cast(text, number);
     }
     if (taken) return std::string{};
-    return digits ? wrong(text, "too large",
-                          fmt::format("the greatest is {}", std::numeric_limits<Number>::max()))
-                  : wrong(text, what, remedy);
+    return too_large ? wrong(text, "too large",
+                             fmt::format("the greatest is {}", std::numeric_limits<Number>::max()))
+                     : wrong(text, what, remedy);
   });
 }
 
@@ -299,14 +312,15 @@ Option Option::range(unsigned least, unsigned most) const {
 
 Option Option::positive() const {
   // Before what any number is asked: a sign alone would be no whole number.
-  option_->transform(CLI::Validator{[](std::string& text) {
-                                      double number = 0;
-                                      return !CLI::detail::lexical_cast(text, number) || number > 0
-                                                 ? std::string{}
-                                                 : wrong(text, "not above zero",
-                                                         "write a number above zero, such as 10");
-                                    },
-                                    ""});
+  option_->transform(
+      CLI::Validator{[](std::string& text) {
+                       double number = 0;
+                       const bool whole = text.find_first_not_of("-0123456789") == std::string::npos;
+                       return !whole || !CLI::detail::lexical_cast(text, number) || number > 0
+                                  ? std::string{}
+                                  : wrong(text, "not above zero", "write a number above zero, such as 10");
+                     },
+                     ""});
   return takes(
       accepted_whole(1, std::numeric_limits<std::uint64_t>::max(), "a whole number that is at least 1"));
 }

@@ -53,7 +53,7 @@ std::string without_leading_zeros(const std::string& text) {
 
 Accepted accepted_whole(std::uint64_t least, std::uint64_t most, std::string expected) {
   const auto holds = [least, most](const std::string& text) {
-    if (text.empty() || text.front() == '-') return false;
+    if (text.empty() || (text.front() != '+' && (text.front() < '0' || text.front() > '9'))) return false;
     const std::string digits = without_leading_zeros(text);
     char* end = nullptr;
     errno = 0;

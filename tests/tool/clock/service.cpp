@@ -2,6 +2,7 @@
 #include "cli/operate/service.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <cstddef>
 #include <cstdlib>
 #include <iterator>

@@ -104,7 +104,7 @@ TEST_CASE("map view: a map of which nothing was drawn yet is none, and a failure
 
 TEST_CASE("map view: it draws again after two seconds, if its time is not over by then") {
   Bench bench;
-  bench.views({"a.pgm"}, {image, about, image, about}, false, 300ms);
+  bench.views({"a.pgm"}, {image, about, image, about}, false, 1500ms);
   CHECK(bench.code == cli::exit_success);
   CHECK(bench.content("a.pgm") == image);
   CHECK(bench.out.ends_with(" s, drawn 1 time\n"));

@@ -296,9 +296,8 @@ TEST_CASE(
   CHECK(problems("") ==
         std::vector<std::string>{
             R"(its monitor looks at "odometry", which no configuration that it leads from asks for)"});
-  CHECK(
-      problems(R"({"topic": "odometry"})") ==
-      std::vector<std::string>{"no configuration that it leads from asks for all that its monitor looks at"});
+  CHECK(problems(R"({"topic": "odometry"})") ==
+        std::vector<std::string>{"its monitor looks at topics that no one configuration asks for together"});
   // What it leads to is not asked.
   CHECK(problems("", R"({"topic": "odometry"})") == problems(""));
 }

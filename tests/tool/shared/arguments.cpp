@@ -58,7 +58,7 @@ TEST_CASE("arguments: a negative number without a zero is a number, and no optio
   CHECK(take({"go", "-.x"}).outcome == Program::Outcome::refused);
 }
 
-TEST_CASE("arguments: a whole number has no sign, and the room of its option") {
+TEST_CASE("arguments: a whole number is not negative, and has the room of its option") {
   const char* const whole = "not a whole number\n          write a whole number, such as 10\n";
   const auto typed = [](const std::string& text, auto& number) {
     Program program{"amiroctl", "a program", "1", "", "begin with go"};
@@ -76,7 +76,8 @@ TEST_CASE("arguments: a whole number has no sign, and the room of its option") {
   };
   std::uint64_t wide = 0;
   std::uint32_t narrow = 0;
-  for (const char* const text : {"-1", "-0", "-18446744073709551615", "x", "1x", "1.5"}) {
+  for (const char* const text :
+       {"-1", "-0", " -1", " 1", "-18446744073709551615", "x", "1x", "1.5", "0x", "0xg"}) {
     CAPTURE(text);
     CHECK_THAT(typed(text, wide), Catch::Contains(whole));
     CHECK_THAT(typed(text, narrow), Catch::Contains(whole));
@@ -86,6 +87,11 @@ TEST_CASE("arguments: a whole number has no sign, and the room of its option") {
   CHECK_THAT(typed("99999999999999999999", wide), Catch::Contains("too large"));
   CHECK_THAT(typed("4294967296", narrow),
              Catch::Contains("too large\n          the greatest is 4294967295\n"));
+  CHECK_THAT(typed("0x10000000000000000", wide), Catch::Contains("too large"));
+  CHECK(typed("0xFFFFFFFFFFFFFFFF", wide).empty());
+  CHECK(wide == 18'446'744'073'709'551'615U);
+  CHECK(typed("+12", wide).empty());
+  CHECK(wide == 12);
   CHECK(typed("18446744073709551615", wide).empty());
   CHECK(wide == 18'446'744'073'709'551'615U);
   CHECK(typed("4294967295", narrow).empty());

@@ -66,7 +66,7 @@ TEST_CASE("spec word: a file whose name has a '=' is one, where there is one") {
   std::filesystem::remove(path);
   const auto left = test::leaving([&] { static_cast<void>(parse_spec_word(path)); });
   CHECK(left.code == exit_usage);
-  CHECK_THAT(left.text, Catch::Contains(": there is no such file, and '" + path.substr(0, path.find('='))));
+  CHECK_THAT(left.text, Catch::Contains(": there is no such file, and '" + path.substr(0, path.rfind('='))));
   CHECK_THAT(left.text, Catch::Contains("' cannot be an interface"));
 }
 

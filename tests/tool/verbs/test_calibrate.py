@@ -124,17 +124,6 @@ class Played(Case):
         self.assertEqual(tool.returncode, 1)
         self.assertIn("AVR is lost: its link is gone", err)
 
-    def test_a_robot_that_falls_silent_as_it_turns(self):
-        self.avr.turn_s = 1000
-        tool = self.start("calibrate", "AVR", "--scan", "200ms")
-        waiting.until(lambda: self.avr.turning_until is not None, "the turn")
-        self.avr.silent = True
-        _, err = tool.communicate(timeout=60)  # the stop is said for 20 s
-        self.assertEqual(tool.returncode, 1)
-        self.assertIn("AVR is lost: it has said nothing for its deadline; it may still turn", err)
-
-
-class OnSimulatedRobots(Case):
     def sim(self, *arguments):
         sim = self.start("sim", *arguments)
         for line in sim.stderr:
