@@ -39,6 +39,8 @@ TEST_CASE("cells of a line: in quotes all is text, two of them are one, and blan
   CHECK(cells(R"("a ""first""",8)") == "1: a \"first\"|8\n");
   CHECK(cells(R"("",8)") == "1: |8\n");
   CHECK(cells(R"(8,"a" , "b" )") == "1: 8|a|b\n");
+  // What stands behind the end of the text is none of it.
+  CHECK(cells(std::string_view{R"(8,"a"")"}.substr(0, 5)) == "1: 8|a\n");
 }
 
 TEST_CASE("cells of a line: empty lines and remarks are none, and count", "[shared]") {

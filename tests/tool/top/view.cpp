@@ -380,6 +380,32 @@ TEST_CASE("top: a row opens into a line a field, and the cursor stays where it i
   CHECK(robot.names().size() == 6);
 }
 
+TEST_CASE("top: no key goes beyond the first row") {
+  for (const Kind kind : {Kind::up, Kind::page_up}) {
+    Robot robot;
+    robot.draw();
+    robot.view.press(Key{Kind::down});  // it shows the cursor
+    robot.view.press(Key{kind});
+    robot.view.press(Key{Kind::enter});
+    CHECK(robot.names() == Names{"scale", "  weight", "  state", "lamp_1", "7FF"});
+  }
+}
+
+TEST_CASE("top: a page is a row less than those in sight, and at least one") {
+  const auto opened = [](std::size_t rows) {
+    Robot robot;
+    for (const Kind kind : {Kind::down, Kind::page_down, Kind::enter}) {
+      robot.draw({80, rows});
+      robot.view.press(Key{kind});
+    }
+    return robot.names();
+  };
+  const Names second{"scale", "lamp_1", "  level", "7FF"};
+  CHECK(opened(6) == second);  // one is in sight
+  CHECK(opened(7) == second);
+  CHECK(opened(8) == Names{"scale", "lamp_1", "7FF"});  // the third, which has nothing to open
+}
+
 TEST_CASE("top: of a field that has kept its value for a second it is said for how long") {
   Robot robot;
   robot.draw();

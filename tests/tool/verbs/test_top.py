@@ -271,7 +271,11 @@ class Top(played_adapter.WithAdapter, screens.Screens):
         self.shows(80, "19.0 of 29.9 s", " 3.325 deg/s")
         self.press(80, "Left")
         self.shows(80, " 9.0 of 29.9 s")
-        self.press(80, "]", "]", "p")
+        self.press(80, "[")
+        self.shows(80, " x0.5 paused")
+        self.press(80, "]", "]")
+        self.shows(80, " x2 paused")
+        self.press(80, "]", "p")
         self.shows(80, " end")
         # A graph that is asked for now shows what came before.
         self.press(80, "Down", "Enter", "Down", "Space")

@@ -1,0 +1,104 @@
+// What a log says of a robot's topics: which are sent, and for which periods they were asked.
+#include "cli/analyse/seen_set.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+#include "ocm/topics/amiro.hpp"
+
+namespace tool_analyse_seen_set_test {
+
+using namespace ocm;
+using namespace ocm::cli::analyse;
+
+struct Sent {
+  int ms = 0;
+  std::uint32_t id = 0;
+  std::vector<std::uint8_t> bytes;
+};
+
+constexpr std::int64_t ms = 1'000'000;
+const std::vector<std::uint8_t> six(6);
+
+/// Requests of the gyroscope and of the behaviour. [spec/topics.json: 0x08 and 0x0D]
+constexpr std::uint32_t of_gyroscope = 0x208, of_accelerometer = 0x209, of_behaviour = 0x20D;
+
+BusSet seen(const std::vector<Sent>& frames) {
+  Arrivals log;
+  for (const Sent& sent : frames) {
+    can::Frame frame;
+    frame.id = sent.id;
+    frame.dlc = static_cast<std::uint8_t>(sent.bytes.size());
+    std::copy(sent.bytes.begin(), sent.bytes.end(), frame.data.begin());
+    log.all.push_back({sent.ms * ms, {}, frame.dlc, frame});
+  }
+  Paces paces;
+  return seen_set(log, amiro::catalogue, nullptr, {}, paces);
+}
+
+std::set<std::int64_t> periods(const BusSet& set) {
+  std::set<std::int64_t> all;
+  for (const BusEntry& entry : set.entries) all.insert(entry.period);
+  return all;
+}
+
+using Periods = std::set<std::int64_t>;
+using Remarks = std::vector<std::string>;
+
+TEST_CASE("seen set: what ends a topic or asks for one sample of it asks for no period", "[shared]") {
+  const auto set = seen({{0, of_gyroscope, {1, 20, 0, 0}},
+                         {10, 0x608, six},
+                         {30, 0x608, six},
+                         {40, of_gyroscope, {0}},
+                         {60, of_gyroscope, {2}},
+                         {61, 0x608, six}});
+  REQUIRE(set.entries.size() == 1);
+  CHECK(set.entries[0].name == "gyroscope");
+  CHECK(periods(set) == Periods{20 * ms});
+  CHECK(set.remarks.empty());
+  // Nor does one that cannot be read.
+  CHECK(periods(seen({{0, of_gyroscope, {1, 20, 0, 0}}, {5, of_gyroscope, {3}}, {10, 0x608, six}})) ==
+        Periods{20 * ms});
+}
+
+TEST_CASE("seen set: of several periods the shortest counts, whenever it was asked for", "[shared]") {
+  const auto set = seen({{0, of_gyroscope, {1, 100, 0, 0}},
+                         {10, of_gyroscope, {1, 20, 0, 0}},
+                         {20, of_gyroscope, {1, 30, 0, 0}},
+                         {25, of_gyroscope, {1, 20, 0, 0}},
+                         {30, 0x608, six}});
+  CHECK(periods(set) == Periods{20 * ms});
+  CHECK(set.remarks == Remarks{"gyroscope was asked for every 100ms and every 20ms: the shorter one counts.",
+                               "gyroscope was asked for every 20ms and every 30ms: the shorter one counts."});
+}
+
+TEST_CASE("seen set: who asks for no certain period has the topic's usual one", "[shared]") {
+  const std::vector<std::uint8_t> eight(8);
+  const auto set = seen({{0, of_behaviour, {1, 200, 0, 0}}, {10, of_behaviour, {1}}, {110, 0x60D, eight}});
+  CHECK_FALSE(set.entries.empty());
+  CHECK(periods(set) == Periods{100 * ms});
+  CHECK(set.remarks ==
+        Remarks{"behaviour was asked for every 200ms and every 100ms: the shorter one counts."});
+}
+
+TEST_CASE(
+    "seen set: what was asked for and did not come is not in it, and has no place among what is left out",
+    "[shared]") {
+  const auto set = seen({{0, of_accelerometer, {1, 20, 0, 0}}, {10, 0x608, six}});
+  REQUIRE(set.entries.size() == 1);
+  CHECK(set.entries[0].name == "gyroscope");
+  CHECK(set.left_out.empty());
+}
+
+TEST_CASE("seen set: a topic has the priority with which it came last", "[shared]") {
+  const auto set = seen({{0, 0x608, six}, {50, 0x508, six}});
+  REQUIRE(set.entries.size() == 1);
+  CHECK(set.entries[0].head.id == 0x508);
+}
+
+}  // namespace tool_analyse_seen_set_test
