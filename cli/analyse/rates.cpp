@@ -254,6 +254,8 @@ void apply_rates(BusSet& set, const std::vector<Rate>& rates) {
           {rate.place, "a message of a file has the priority of its identifier", "leave out the @"});
     if (rate.off) std::erase_if(set.entries, [&](const BusEntry& entry) { return entry.name == rate.name; });
   }
+  if (set.entries.empty() && !rates.empty() && mistakes.empty())
+    mistakes.push_back({"--rates", "every message is off", "leave one on"});
   stop_at(mistakes, "--rates");
 }
 

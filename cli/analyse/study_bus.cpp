@@ -271,12 +271,14 @@ BusOptions at_rates_of(const BusSet& set, BusOptions options) {
   if (options.bit_rate == 0) options.bit_rate = set.bit_rate != 0 ? set.bit_rate : options.usual_bit_rate;
   if (options.bit_rate == 0)
     fail({"the spec says no bit rate", "--bitrate gives it, such as --bitrate 500k"}, exit_usage);
-  if (options.data_bit_rate == 0)
-    options.data_bit_rate = set.data_bit_rate;
-  else if (options.data_bit_rate < options.bit_rate)
-    fail({fmt::format("--data-bitrate: {} is slower than the rest of the frame, {}",
+  const bool given = options.data_bit_rate != 0;
+  if (!given) options.data_bit_rate = set.data_bit_rate;
+  if (options.data_bit_rate != 0 && options.data_bit_rate < options.bit_rate)
+    fail({fmt::format("{}: {} is slower than the rest of the frame, {}",
+                      given ? "--data-bitrate" : "the data rate of the set",
                       bit_rate_text(options.data_bit_rate), bit_rate_text(options.bit_rate)),
-          "the data of CAN FD are sent at least as fast"},
+          given ? "the data of CAN FD are sent at least as fast"
+                : "the data of CAN FD are sent at least as fast; --data-bitrate gives another one"},
          exit_usage);
   return options;
 }

@@ -55,6 +55,16 @@ TEST_CASE("bit rates: there is one, and the data are not slower", "[shared]") {
   CHECK_THAT(slower, Catch::Contains("--data-bitrate: 499999 bit/s is slower than the rest of the frame, 500 "
                                      "kbit/s\n"));
   CHECK_THAT(slower, Catch::Contains("the data of CAN FD are sent at least as fast\n"));
+  BusSet set;
+  set.bit_rate = 125'000;
+  set.data_bit_rate = 499'999;
+  options.data_bit_rate = 0;
+  const std::string of_set = refused(set, options);
+  CHECK_THAT(of_set, Catch::Contains("the data rate of the set: 499999 bit/s is slower than the rest of the "
+                                     "frame, 500 kbit/s\n"));
+  CHECK_THAT(of_set, Catch::Contains("--data-bitrate gives another one\n"));
+  options.bit_rate = 0;
+  CHECK(held(set, options) == Rates{125'000, 499'999});
 }
 
 }  // namespace tool_analyse_bit_rates_test

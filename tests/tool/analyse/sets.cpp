@@ -99,6 +99,24 @@ TEST_CASE("rates: of several for a topic the last one counts", "[shared]") {
   CHECK(of_the_ring == std::set<std::int64_t>{30'000'000});
 }
 
+TEST_CASE("rates: of a table one message at least is left on", "[shared]") {
+  BusSet set;
+  set.entries.resize(2);
+  set.entries[0].name = "a";
+  set.entries[1].name = "b";
+  std::vector<Rate> rates(2);
+  rates[0].name = "a";
+  rates[0].off = true;
+  rates[1].name = "b";
+  rates[1].off = true;
+  BusSet one = set;
+  apply_rates(one, {rates[0]});
+  CHECK(one.entries.size() == 1);
+  const auto left = test::leaving([&] { apply_rates(set, rates); });
+  CHECK(left.code != cli::exit_success);
+  CHECK_THAT(left.text, Catch::Contains("every message is off") && Catch::Contains("leave one on"));
+}
+
 TEST_CASE("sets: a number of a table has 63 bits, and a sign", "[shared]") {
   const Folder folder;
   const auto bus = [&folder](const std::string& period) {
