@@ -7,10 +7,12 @@
 #include <deque>
 #include <fcntl.h>
 #include <filesystem>
+#include <fstream>
 #include <map>
 #include <optional>
 #include <set>
 #include <sys/file.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include "ocm/topics/amiro.hpp"
@@ -545,6 +547,80 @@ TEST_CASE("recorder: what can be read of a file is said, whose end the disk does
     CHECK_THAT(files.failure().what, Catch::Contains("No space left on device"));
     CHECK(files.readable() == frames);
   }
+}
+
+/// As long as one lives no file may grow.
+class NoFileGrows {
+ public:
+  NoFileGrows() {
+    ::getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit none{0, before_.rlim_max};
+    ::setrlimit(RLIMIT_FSIZE, &none);
+  }
+  ~NoFileGrows() { ::setrlimit(RLIMIT_FSIZE, &before_); }
+  NoFileGrows(const NoFileGrows&) = delete;
+  NoFileGrows& operator=(const NoFileGrows&) = delete;
+
+ private:
+  rlimit before_{};
+};
+
+TEST_CASE("recorder: what an older recording left is not counted as what can be read of this one") {
+  const Silence silence;
+  const Folder folder;
+  const World world{1};
+  record::FilesOptions options = to_one_file(folder);
+  options.overwrite = true;
+  std::ofstream{options.path} << "(1.000000000) can0 601#\n(2.000000000) can0 601#\n";
+  record::Files files{options, amiro::catalogue};
+  REQUIRE(files.open().ok());
+  log::Interfaces interfaces;
+  interfaces.number("can0");
+  const std::vector<log::Entry> entries(1, log::Entry{base::Time{3s}, can::Frame{0x601, 4, {}}});
+  REQUIRE(files.write(entries, interfaces, 0s));
+  bool flushed = true;
+  {
+    const NoFileGrows full;
+    flushed = files.flush();
+  }
+  CHECK_FALSE(flushed);
+  CHECK_FALSE(files.finish());
+  CHECK_THAT(files.failure().what, Catch::Contains("File too large"));
+  CHECK(files.readable() == 0);
+  CHECK(read_file(options.path, "candump").entries.size() == 2);
+}
+
+TEST_CASE("recorder: a file that a ring cannot delete is said, and one that is gone already is not") {
+  const Folder folder;
+  const World world{1};
+  record::FilesOptions options = to_one_file(folder);
+  options.split.size = 1;
+  options.ring = 2;
+  const auto numbered = [&](std::uint64_t number) {
+    return record::numbered({folder / "run", std::string{options.format->ending}}, number);
+  };
+  record::Files files{options, amiro::catalogue};
+  log::Interfaces interfaces;
+  interfaces.number("can0");
+  const std::vector<log::Entry> entries(1, log::Entry{base::Time{1s}, can::Frame{0x601, 4, {}}});
+  REQUIRE(files.open().ok());
+  const auto write_one = [&] { REQUIRE(files.write(entries, interfaces, 0s)); };
+  Captured said{STDERR_FILENO};
+  write_one();
+  write_one();
+  CHECK(std::filesystem::remove(numbered(1)));
+  write_one();
+  CHECK(files.deleted() == 0);
+  CHECK(std::filesystem::remove(numbered(2)));
+  std::filesystem::create_directory(numbered(2));
+  write_one();
+  CHECK(files.deleted() == 0);
+  write_one();
+  CHECK(files.deleted() == 1);
+  CHECK(files.finish());
+  CHECK(said.text() == "cannot delete " + numbered(2) + ": Is a directory\n");
+  CHECK(files.count() == 5);
+  CHECK(folder.files() == std::set<std::string>{numbered(2), numbered(4), numbered(5)});
 }
 
 /// There is always one more batch of frames, each of which takes a millisecond to fetch.

@@ -11,8 +11,10 @@
 #include "cli/shared/messages.hpp"
 #include "cli/shared/outgoing.hpp"
 #include "cli/shared/set_points.hpp"
+#include "cli/shared/unhurried_messages.hpp"
 #include "tests/tool/captured.hpp"
 #include "tests/tool/clock/played_bus.hpp"
+#include "tests/tool/piped_stderr.hpp"
 #include "tests/unit/base/explore.hpp"
 
 namespace tool_clock_replay_test {
@@ -643,6 +645,102 @@ TEST_CASE("replay: behind a travel that the bus has kept back, the log goes on b
   REQUIRE(sent.size() == entries.size());
   CHECK(sent[5].taken >= World::start + 1s);  // all before it have left
   CHECK(sent[6].taken - sent[5].taken >= 490ms);
+}
+
+/// A frame of a sensor at each of these times.
+std::vector<log::Entry> sensors_at(const std::vector<Duration>& times) {
+  std::vector<log::Entry> entries;
+  for (const Duration time : times)
+    entries.emplace_back(base::Time{time}, can::Frame{0x601, 4, {1}}, std::uint16_t{0});
+  return entries;
+}
+
+TEST_CASE("replay: a bus is looked at until two milliseconds before a frame is due, then only time passes") {
+  const Silence silence;
+  for (const Duration before : {2500us, 1500us}) {
+    CAPTURE(before.count());
+    World world{1};
+    PlayedBus::Conditions conditions;
+    conditions.gone = World::start + 1s - before;
+    OnOneBus<PlayedLog> replayed{world, conditions, sensors_at({0s, 1s}), std::size_t{1}};
+    CHECK_THROWS_AS(replayed.play(), cli::Exit);
+    CHECK(replayed.sent().size() == 1);
+    if (before > 2ms)
+      CHECK(world.now() < World::start + 998ms);
+    else
+      CHECK(world.now() >= World::start + 1s);
+  }
+}
+
+TEST_CASE("replay: what stderr did not take is written in a pause of the log") {
+  World world{1};
+  const PipedStderr pipe;
+  const cli::UnhurriedMessages unhurried;
+  pipe.fill();
+  cli::remark("for later");
+  CHECK(pipe.read().empty());
+  OnOneBus<PlayedLog> replayed{world, PlayedBus::Conditions{}, sensors_at({0s, 1s}), std::size_t{1}};
+  replayed.play();
+  CHECK(pipe.read() == "for later\n");
+}
+
+TEST_CASE("replay: a set point waits no longer where the frames behind it leave no pause") {
+  const Silence silence;
+  World world{1};
+  PlayedBus::Conditions conditions;
+  conditions.room = 5000;
+  conditions.stuck = {{World::start, World::start + 60s}};
+  std::vector<log::Entry> entries = drive_of(1);
+  for (int i = 1; i < 2000; ++i)
+    entries.emplace_back(base::Time{i * 1ms}, can::Frame{0x601, 4, {1}}, std::uint16_t{0});
+  OnOneBus<PlayedLog> replayed{world, conditions, entries, std::size_t{1}};
+  CHECK_THROWS_AS(replayed.play(), cli::Exit);
+  CHECK(world.now() >= World::start + client::longest_without_set_point);
+  CHECK(world.now() < World::start + client::longest_without_set_point + 50ms);
+  REQUIRE(replayed.sent().size() > 2);
+  const can::Frame& last = replayed.sent().back().frame;
+  CHECK(last.id == motors);
+  CHECK(cli::is_rest(last));
+}
+
+TEST_CASE("replay: error frames, and those of CAN FD for a bus without it, are left out and counted") {
+  const Silence silence;
+  World world{1};
+  auto entries = sensors_at({0s, 1ms, 2ms, 3ms, 4ms, 5ms});
+  entries[1].format = can::Format::error;
+  entries[3].flags = entries[4].flags = log::flag::fd;
+  OnOneBus<PlayedLog> replayed{world, PlayedBus::Conditions{}, entries, std::size_t{1}};
+  replayed.play();
+  const replay::Played& played = replayed.player->played();
+  CHECK(played.sent == 3);
+  CHECK(played.error_frames == 1);
+  CHECK(played.fd_frames == 2);
+  CHECK(played.no_route == 0);
+  CHECK(played.not_chosen == 0);
+  CHECK(replayed.sent().size() == 3);
+}
+
+TEST_CASE("replay: a pass begins when the last frame of the one before was due") {
+  const Silence silence;
+  World world{1};
+  const auto entries = sensors_at({0s, 300ms});
+  OnOneBus<PlayedLog> replayed{world, PlayedBus::Conditions{}, entries, std::size_t{1}};
+  auto& player = *replayed.player;
+  CHECK(player.lasted() == 0s);
+  replayed.play();
+  log::MemorySource nothing{""};
+  log::Input input{nothing};
+  PlayedLog again{world, input, entries, 1};
+  player.play(again);
+  CHECK(player.lasted() >= 600ms);
+  CHECK(player.lasted() < 601ms);
+  CHECK(player.playback().backward() == 0);
+  CHECK_FALSE(player.cut_short());
+  const auto& sent = replayed.sent();
+  REQUIRE(sent.size() == 4);
+  CHECK(sent[1].taken - sent[0].taken >= 299ms);
+  CHECK(sent[2].taken - sent[1].taken < 1ms);
+  CHECK(sent[3].taken - sent[1].taken >= 299ms);
 }
 
 }  // namespace tool_clock_replay_test

@@ -1,7 +1,6 @@
 // What people read on stderr, and the counts in it.
 #include "cli/shared/messages.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <chrono>
@@ -12,10 +11,12 @@
 #include <catch2/catch.hpp>
 
 #include "cli/shared/unhurried_messages.hpp"
+#include "tests/tool/piped_stderr.hpp"
 
 namespace messages_test {
 
 using namespace ocm::cli;
+using ocm::test::PipedStderr;
 
 TEST_CASE("messages: characters that command a terminal are written out, each of them") {
   CHECK(printable("a\tb\nc d") == "a\tb\nc d");
@@ -54,38 +55,8 @@ TEST_CASE("messages: only counts of something") {
   CHECK(text == "sent, 1 lost, 2 errors left out, 1 gap");
 }
 
-/// Standard error as a pipe, as long as it lives.
-class Pipe {
- public:
-  Pipe() : before_(::dup(STDERR_FILENO)) {
-    REQUIRE(::pipe2(ends_.data(), O_CLOEXEC) == 0);
-    REQUIRE(::dup2(ends_[1], STDERR_FILENO) == STDERR_FILENO);
-    REQUIRE(::fcntl(ends_[0], F_SETFL, O_NONBLOCK) == 0);
-  }
-  ~Pipe() {
-    ::dup2(before_, STDERR_FILENO);
-    for (const int end : {before_, ends_[0], ends_[1]}) ::close(end);
-  }
-  /// It is empty, and is full then.
-  void fill() const {
-    const std::string blanks(static_cast<std::size_t>(::fcntl(ends_[1], F_GETPIPE_SZ)), ' ');
-    REQUIRE(::write(ends_[1], blanks.data(), blanks.size()) == static_cast<ssize_t>(blanks.size()));
-  }
-  /// What is in it, without blanks before it.
-  [[nodiscard]] std::string read() const {
-    std::string text(1 << 20, '\0');
-    const auto size = ::read(ends_[0], text.data(), text.size());
-    text.resize(size < 0 ? 0 : static_cast<std::size_t>(size));
-    return text.substr(std::min(text.find_first_not_of(' '), text.size()));
-  }
-
- private:
-  std::array<int, 2> ends_{};
-  int before_;
-};
-
 TEST_CASE("messages: unhurried ones wait for no reader, and come in their order") {
-  const Pipe pipe;
+  const PipedStderr pipe;
   std::chrono::steady_clock::time_point too_late;
   {
     const UnhurriedMessages unhurried;
@@ -123,7 +94,7 @@ TEST_CASE("messages: unhurried ones wait for no reader, and come in their order"
 }
 
 TEST_CASE("messages: held ones are counted, and written when they are held no more") {
-  const Pipe pipe;
+  const PipedStderr pipe;
   {
     const HeldMessages held;
     CHECK(HeldMessages::newest().empty());
@@ -138,7 +109,7 @@ TEST_CASE("messages: held ones are counted, and written when they are held no mo
 }
 
 TEST_CASE("messages: of several parts that wait for no reader the last one ends that") {
-  const Pipe pipe;
+  const PipedStderr pipe;
   {
     const UnhurriedMessages outer;
     pipe.fill();
@@ -157,7 +128,7 @@ TEST_CASE("messages: of several parts that wait for no reader the last one ends 
 }
 
 TEST_CASE("messages: held ones stay held behind a part that waits for no reader") {
-  const Pipe pipe;
+  const PipedStderr pipe;
   {
     const HeldMessages held;
     {
@@ -174,7 +145,7 @@ TEST_CASE("messages: held ones stay held behind a part that waits for no reader"
 }
 
 TEST_CASE("messages: what is written now is as much as is taken, and why no more") {
-  const Pipe pipe;
+  const PipedStderr pipe;
   const std::string line(1000, 'x'), much(1 << 20, 'x');
   Written written = write_now(STDERR_FILENO, line);
   CHECK(written.bytes == line.size());

@@ -142,4 +142,42 @@ TEST_CASE("stand-in: half of a sample is none, and set points are not learnt") {
   CHECK(robot.robot.samples() == 1);
 }
 
+TEST_CASE("stand-in: all that it learns takes 1 GB at most") {
+  // A list that grows has room for as much again.
+  CHECK(StandIn::most_frames * 2 * sizeof(can::Payload) == std::size_t{1} << 30);
+}
+
+TEST_CASE("stand-in: the first 256 topics of a spec are answered") {
+  protocol::FrameLayout of_message, of_last;
+  of_message.length = 8;
+  of_message.address = {protocol::Address::By::identifier, true, 0x123};
+  of_last.id = protocol::TopicId{0x11};
+  of_last.length = 1;
+  protocol::Topic message;
+  message.kind = protocol::Kind::message;
+  message.board = protocol::no_board;
+  message.frames = {&of_message, 1};
+  std::vector<protocol::Topic> topics(255, message);
+  topics.push_back(scale);
+  topics.push_back(scale);
+  topics.back().id = of_last.id;
+  topics.back().frames = {&of_last, 1};
+  const protocol::Catalogue catalogue{"large", 250'000, test::boards, topics};
+  StandIn robot{catalogue};
+  CHECK(robot.learn(frame(Direction::sensor, 0x10, {0, 0, 0, 1})));
+  CHECK(robot.learn(frame(Direction::sensor, 0x21, {1})));
+  CHECK(robot.learn(frame(Direction::sensor, 0x11, {1})));
+  CHECK(robot.samples(topics[255]) == 1);
+  CHECK(robot.samples(topics[256]) == 1);
+  const auto ask = [&robot](std::uint8_t topic) {
+    return robot.take(protocol::encode(protocol::Request{protocol::TopicId{topic}, Mode::once,
+                                                         protocol::default_period, Priority::high}),
+                      start);
+  };
+  CHECK(ask(0x11) == Answer::silent);
+  CHECK(robot.next() == base::never);
+  CHECK(ask(0x10) == Answer::accepted);
+  CHECK(robot.due(start).size() == 2);
+}
+
 }  // namespace stand_in_test

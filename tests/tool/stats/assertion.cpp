@@ -89,6 +89,7 @@ TEST_CASE("assertions: each relation, at the limit and beside it") {
   CHECK(row("==") == "nyn");
   CHECK(row("!=") == "yny");
   CHECK(row(" <= ") == "nyy");
+  CHECK(holds("  scale.count  ==  20  "));
 }
 
 TEST_CASE("assertions: what was not measured does not hold, whatever is asked") {
@@ -151,8 +152,27 @@ TEST_CASE("assertions: of several buses the first on which it does not hold is n
   CHECK_FALSE(holds("scale.count==20", {first, second, third}));
   CHECK(said("scale.count==20", {first, second, third}) == "scale.count==20: it is 5 on can1");
   CHECK(said("scale.count==21", {first}) == "scale.count==21: it is 20");
+  CHECK(said("bus.errors==8", {second, third}) == "bus.errors==8: it is 7 on can1");
   first.figures.topics.clear();
   CHECK(holds("scale.count==20", {first, third}));
+  // On none of them.
+  third.figures.topics.clear();
+  CHECK(said("scale.rate>0", {first, third}) == "scale.rate>0: nothing was measured on any bus");
+  CHECK(said("scale.count>0", {first, third}) == "scale.count>0: it is 0 on any bus");
+  CHECK(holds("scale.count==0", {first, third}));
+}
+
+TEST_CASE("assertions: what is measured is said in six digits") {
+  Bus one = bus();
+  auto& timing = one.figures.topics[0].timing;
+  timing.rate_hz = 9.87654321;
+  timing.mean_ns = 101'234'567;
+  timing.spread_ns = 1'234'567'890;
+  one.figures.load = 0.123456789;
+  CHECK(said("scale.rate<1", {one}) == "scale.rate<1: it is 9.87654 Hz");
+  CHECK(said("scale.period<1ms", {one}) == "scale.period<1ms: it is 101.235 ms");
+  CHECK(said("scale.spread<1ms", {one}) == "scale.spread<1ms: it is 1.23457 s");
+  CHECK(said("bus.load<1%", {one}) == "bus.load<1%: it is 12.346 %");
 }
 
 TEST_CASE("assertions: numbers with their units, in as many digits as asked for") {
@@ -169,9 +189,10 @@ TEST_CASE("assertions: numbers with their units, in as many digits as asked for"
 }
 
 TEST_CASE("assertions: what is none") {
-  for (const char* text : {"scale.rate", "rate>1", "scale.rat>1", "bus.jitter<1ms", "scale.peak<1%",
-                           "scale.rate>fast", "scale.rate>1ms", "scale.gap>1", "scale.gap>1Hz",
-                           "scale.load<1", "scale.count>1ms", "scale.rate!1", "scale.rate=>1"}) {
+  for (const char* text :
+       {"scale.rate", "rate>1", "scale.rat>1", "bus.jitter<1ms", "scale.peak<1%", "scale.rate>fast",
+        "scale.rate>1ms", "scale.gap>1", "scale.gap>1Hz", "scale.load<1", "scale.count>1ms", "scale.rate!1",
+        "scale.rate=>1", "scale.rate>", "scale.rate>=", ">1", ".rate>", ""}) {
     CAPTURE(text);
     CHECK_FALSE(Assertion::is_well_formed(text));
   }

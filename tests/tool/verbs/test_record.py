@@ -10,6 +10,7 @@ import socket
 import struct
 import subprocess
 import sys
+import termios
 import threading
 import time
 
@@ -594,15 +595,18 @@ class Recording(Case):
         _, err = self.run_tool("record", "-o", self.path("no/such/folder.log"), code=1)
         self.assertIn("cannot create", err)
 
-    def test_progress_on_a_terminal(self):
-        self.start_sim()
-        self.run_tool("publish", "gyro", "5ms")
+    def record_on_a_terminal(self, name, columns=0):
+        """Records for 2.5 s, with messages to a terminal; and where they are read. 0 columns: it does not say how many it has."""
         ours, theirs = os.openpty()
-        recorder = waiting.Program([AMIROCTL, "record", "-o", self.path("a.log"), "--duration", "2500ms"],
+        fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", 24, columns, 0, 0))
+        recorder = waiting.Program([AMIROCTL, "record", "-o", self.path(name), "--duration", "2500ms"],
                                    env=self.environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                                    stderr=theirs)
         os.close(theirs)
         self._started.append(recorder)
+        return recorder, ours
+
+    def said_on_a_terminal(self, recorder, ours):
         text = b""
         try:
             while piece := os.read(ours, 4096):
@@ -611,13 +615,22 @@ class Recording(Case):
             pass  # the end of a terminal
         os.close(ours)
         self.assertEqual(recorder.wait(timeout=60), 0)
-        said = text.decode()
+        return text.decode()
+
+    def test_progress_on_a_terminal(self):
+        self.start_sim()
+        self.run_tool("publish", "gyro", "5ms")
+        wide, narrow = self.record_on_a_terminal("a.log"), self.record_on_a_terminal("b.log", columns=40)
+        said = self.said_on_a_terminal(*wide)
         self.assertRegex(said, r"\d+ frames, [12]\d\d/s, sim [3-6] % full, 0 lost, [0-9.]+ (bytes|kB), "
                                r"[0-9.]+ \S+ free")
         lasted = float(re.search(r"recorded \d+ frames in ([0-9.]+)s to", said)[1])
         self.assertLessEqual(said.count(" free"), int(lasted))  # once a second
         # No error frame came, so none is counted.
         self.assertRegex(said, r"recorded \d+ frames in [2-9]\.\d+s to \S+a\.log, \d+\.\d kB\r\n$")
+        # A line that breaks could not be erased; the last column is left free.
+        lines = [line for line in self.said_on_a_terminal(*narrow).split("\r\x1b[K") if re.match(r"\d+ frames?, ", line)]
+        self.assertEqual({len(line) for line in lines}, {39}, lines)
 
 
 if __name__ == "__main__":
