@@ -36,7 +36,8 @@ class Assertion {
 
   struct Verdict {
     bool holds = false;
-    std::optional<double> measured;  ///< of the bus where it is worst; empty: no data, which does not hold
+    std::optional<double> measured;  ///< of the first bus where it does not hold, or the last; empty: no
+                                     ///< data, which does not hold
     std::string said;                ///< "gyro.rate>1.9: it is 0.95 Hz"
   };
   /// Holds where it holds on every bus on which the topic was seen.
