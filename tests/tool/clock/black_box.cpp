@@ -143,7 +143,7 @@ TEST_CASE("black box: frames of one time stay in the order in which they came") 
 
 TEST_CASE("black box: each of its times is the last, or the first, of its kind") {
   const World world{1};
-  constexpr Duration settling = operate::BlackBox::settling;
+  constexpr Duration settling = 100ms;
   {
     Boxed boxed;  // so late it still finds its place, and later not
     for (const Duration after : {0ns, Duration{-settling}}) boxed.box.add(at(after), World::start);

@@ -121,4 +121,29 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("spool: what cannot be kept under another name stays where it is, and that is said") {
+  const Spooled spooled;
+  const std::string left = (spooled.folder / "test.running-1.log").string();
+  std::ofstream{left} << "one\n";
+  operate::Spool spool{spooled.folder.string(), "test", 10s, amiro::catalogue};
+  const std::string kept = (spooled.folder / "none" / "killed.log").string();
+  const auto recovered = spool.recover(kept, (spooled.folder / "killed-2.log").string());
+  REQUIRE(recovered);
+  CHECK(recovered->files.empty());
+  REQUIRE(recovered->lost.has_value());
+  CHECK(recovered->lost->what == left + " cannot become " + kept + ": No such file or directory");
+  CHECK(recovered->lost->remedy == "a folder in which files can be renamed");
+  CHECK(std::filesystem::exists(left));
+}
+
+TEST_CASE("spool: where none has left anything there is nothing to keep, and nothing is lost") {
+  Spooled spooled;
+  const auto recovered = spooled.spool.recover((spooled.folder / "killed.log").string(),
+                                               (spooled.folder / "killed-2.log").string());
+  REQUIRE(recovered);
+  CHECK(recovered->files.empty());
+  CHECK_FALSE(recovered->lost.has_value());
+  CHECK(std::filesystem::is_empty(spooled.folder));
+}
+
 }  // namespace tool_clock_spool_test

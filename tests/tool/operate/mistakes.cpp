@@ -331,6 +331,18 @@ TEST_CASE("operate: of a set point that is outside the spec the field is named t
   CHECK(remedy(R"("fan": "10", "watts": "20")") == "minutes takes 1 to 30");
 }
 
+TEST_CASE("operate: where a file has no monitor at all one is to be added") {
+  const auto loaded = operate::parse(
+      R"({"name": "blind", "initial": "all", "fall_back": "halted", "settle": "60ms", "reaction": "20ms", "handling": "1ms",
+          "configurations": [{"name": "all"}, {"name": "halted"}],
+          "transitions": [{"from": "all", "to": "halted", "when": "near"}]})",
+      "blind", amiro::catalogue, 500'000);
+  REQUIRE(loaded.problems.size() == 1);
+  CHECK(loaded.problems[0].place.ends_with(": /transitions/0/when"));
+  CHECK(loaded.problems[0].what == R"(there is no monitor "near")");
+  CHECK(loaded.problems[0].remedy == "add it to monitors");
+}
+
 TEST_CASE("operate: a load of the bus is rounded to per mille, with and without its sign") {
   struct Typed {
     const char* typed;

@@ -121,4 +121,34 @@ TEST_CASE("operate: what a board alone cannot serve in time is one reason, and t
   CHECK(doubts("40ms").empty());
 }
 
+TEST_CASE("operate: of what others send the frame that takes longest is named, of two the more urgent one") {
+  // Three frames of one length: the second waits for the first and for one that is on its way, and the third
+  // for both, which is as long.
+  const auto oven = spec::parse(
+      R"({"robot": "Oven", "namespace": "oven", "bus": {"bit_rate": 10000, "source": "decided"},
+          "boards": [{"name": "main_board", "mcu": "STM32F103", "source": "decided"}],
+          "topics": [
+            {"name": "heat", "id": "0x11", "board": "main_board", "deadline": "4ms", "source": "decided",
+             "frames": [{"fields": [{"name": "value", "byte": 0, "type": "u8"}]}]},
+            {"name": "smoke", "id": "0x12", "board": "main_board", "deadline": "5ms", "source": "decided",
+             "frames": [{"fields": [{"name": "value", "byte": 0, "type": "u8"}]}]},
+            {"name": "door", "id": "0x13", "board": "main_board", "deadline": "6ms", "source": "decided",
+             "frames": [{"fields": [{"name": "value", "byte": 0, "type": "u8"}]}]}]})",
+      "oven.json");
+  INFO(of(oven.problems));
+  REQUIRE(oven.spec);
+  const auto loaded = operate::parse(
+      R"({"name": "warm", "initial": "all", "fall_back": "all", "settle": "60ms", "reaction": "20ms", "handling": "1ms",
+          "others": [{"topic": "heat", "period": "1s"}, {"topic": "smoke", "period": "1s"}, {"topic": "door", "period": "1s"}],
+          "configurations": [{"name": "all"}]})",
+      "warm", oven.spec->catalogue(), 10'000);
+  INFO(of(loaded.problems));
+  REQUIRE(loaded.file);
+  const auto study = operate::study(*loaded.file, 10'000);
+  INFO(of(study.doubts));
+  REQUIRE(study.doubts.size() == 1);
+  CHECK_THAT(study.doubts[0].what, Catch::StartsWith("in \"all\" what others send takes up to ") &&
+                                       Catch::EndsWith(", its deadline is 5 ms"));
+}
+
 }  // namespace operate_study_test

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <catch2/catch.hpp>
@@ -158,6 +159,82 @@ TEST_CASE("operate: the tables have each condition, and how long a monitor is to
   std::vector<base::Duration> lasting;
   for (const auto& monitor : file.monitors) lasting.push_back(monitor.lasting);
   CHECK(lasting == std::vector<base::Duration>{0s, 0s, 1500ms, 2s, 0s, 0s, 0s, 0s});
+}
+
+TEST_CASE("operate: what two monitors look at alike is one condition, and what differs in one thing is two") {
+  const auto conditions = [](const std::string& first, const std::string& second) {
+    const auto loaded = parsed(
+        R"({"name": "pair", "initial": "all", "fall_back": "all", "settle": "60ms", "reaction": "20ms", "handling": "1ms",
+            "configurations": [{"name": "all", "streams": [{"topic": "ring"}]}],
+            "monitors": [{"name": "one", "when": )" +
+        first + R"(}, {"name": "two", "when": )" + second + "}]}");
+    REQUIRE(loaded.file->terms.size() == 2);
+    // Each monitor has its own, or both the first.
+    CHECK(loaded.file->terms[0][0].condition == 0);
+    CHECK(loaded.file->terms[1][0].condition == loaded.file->conditions.size() - 1);
+    return loaded.file->conditions.size();
+  };
+  struct Pair {
+    const char* first;
+    const char* second;
+  };
+  constexpr const char* wide_band = R"({"where": "ring.sensor_1>3000", "hysteresis": "200"})";
+  for (const auto& [first, second] : {
+           Pair{R"("ring.sensor_1>5")", R"("ring.sensor_1>5")"},
+           Pair{R"("ring.sensor_1>5")", R"("ring.sensor_1>=6")"},
+           Pair{R"("ring.sensor_1>5")", R"({"not": "ring.sensor_1>5"})"},
+           Pair{wide_band, wide_band},
+           Pair{R"({"age": "ring", "above": "300ms"})", R"({"age": "proximity_ring", "above": "300000us"})"},
+           Pair{R"({"rate": "ring", "above": 5, "window": "1s"})",
+                R"({"rate": "ring", "above": 5, "window": "1000ms"})"},
+           Pair{R"({"bus_load": true, "above": "7%", "window": "1s"})",
+                R"({"bus_load": true, "above": "7.0", "window": "1s"})"},
+           Pair{R"({"bus_state": "off"})", R"({"bus_state": "off"})"},
+           Pair{R"({"refusals": true})", R"({"refusals": true, "above": 0})"},
+       }) {
+    CAPTURE(first, second);
+    CHECK(conditions(first, second) == 1);
+  }
+  for (const auto& [first, second] : {
+           Pair{R"({"age": "ring", "above": "300ms"})", R"({"gap": "ring", "above": "300ms"})"},  // what
+           Pair{R"("ring.sensor_1>5")", R"("ring.sensor_1<5")"},                                  // how
+           Pair{R"({"age": "ring", "above": "300ms"})",
+                R"({"age": "odometry", "above": "300ms"})"},        // of what
+           Pair{R"("ring.sensor_1>5")", R"("ring.sensor_2>5")"},    // frame
+           Pair{R"("floor.sensor_1>5")", R"("floor.sensor_2>5")"},  // field
+           Pair{R"("ring.sensor_1>5")", R"("ring.sensor_1>6")"},    // limit
+           Pair{wide_band, R"({"where": "ring.sensor_1>3000", "hysteresis": "201"})"},
+           Pair{R"({"rate": "ring", "above": 5, "window": "1s"})",
+                R"({"rate": "ring", "above": 5, "window": "2s"})"},
+       }) {
+    CAPTURE(first, second);
+    CHECK(conditions(first, second) == 2);
+  }
+}
+
+TEST_CASE("operate: what is repeated each nanosecond, or comes so often, is no less than what comes seldom") {
+  CHECK(with_change(R"("period": "250ms")", R"("period": "1ns")").file->stated_others[1] ==
+        reflective::Stream{topic("led_3"), 1ns, Priority::medium});
+  const auto of = [](const std::string& repeat, const std::string& commanders = "") {
+    return operate::parse(
+        R"({"name": "often", "initial": "all", "fall_back": "all", "settle": "60ms", "reaction": "20ms", "handling": "1ms",
+            "configurations": [{"name": "all", )" +
+            commanders + R"("entry": [{"topic": "motors")" + repeat + "}]}]}",
+        "often", amiro::catalogue, 500'000);
+  };
+  // What it repeats itself no other may command.
+  for (const auto& [repeat, expected] :
+       {std::pair{"", 1U}, std::pair{R"(, "repeat": "0ns")", 1U}, std::pair{R"(, "repeat": "1ns")", 0U}}) {
+    CAPTURE(repeat);
+    const auto loaded = of(repeat);
+    REQUIRE(loaded.file);
+    CHECK(loaded.file->parts[0].expected.size() == expected);
+    const auto driven = of(repeat, R"("commanders": ["drive"], )");
+    CHECK(driven.problems.size() == 1 - expected);
+    if (!driven.problems.empty())
+      CHECK(driven.problems[0].what ==
+            R"("drive" may command "motors", of which "entry" repeats a set point)");
+  }
 }
 
 TEST_CASE("operate: refusals are said from the first one on, where a file says no number") {

@@ -1,0 +1,236 @@
+// What `operate` tells whoever asks it, prints and sums up where a run is less smooth than others: a socket
+// that is lost more than once, more changes than it remembers, a request that is dropped, frames that are
+// lost or replaced, a refusal without a reason.
+#include <csignal>
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <sstream>
+#include <string>
+#include <string_view>
+#include <unistd.h>
+#include <utility>
+#include <vector>
+
+#include <catch2/catch.hpp>
+#include <fmt/format.h>
+
+#include "ocm/can/error_frame.hpp"
+#include "ocm/topics/amiro.hpp"
+
+#include "cli/operate/runner.hpp"
+#include "cli/shared/operator_link.hpp"
+#include "tests/tool/captured.hpp"
+#include "tests/tool/clock/played_bus.hpp"
+#include "tests/tool/local_client.hpp"
+
+namespace tool_clock_operate_told_test {
+
+using namespace ocm;
+using namespace ocm::test;
+namespace operate = cli::operate;
+namespace fs = std::filesystem;
+using Texts = std::vector<std::string>;
+
+constexpr std::string_view file_text = R"({
+  "name": "told", "initial": "here", "fall_back": "halted", "settle": "60ms", "reaction": "5ms", "handling": "1ms",
+  "configurations": [
+    {"name": "here", "streams": [{"topic": "odometry", "period": "50ms"}]},
+    {"name": "there"},
+    {"name": "halted"}
+  ],
+  "monitors": [{"name": "ill", "when": {"bus_state": "off"}}],
+  "transitions": [
+    {"to": "halted", "when": "ill"},
+    {"from": ["here", "halted"], "to": "there", "on_request": true, "precedence": 1},
+    {"from": "there", "to": "here", "on_request": true, "precedence": 1}
+  ]
+})";
+
+/// It repeats its own set point, and asks for nothing.
+constexpr std::string_view repeating_text = R"({
+  "name": "told", "initial": "halted", "fall_back": "halted", "settle": "60ms", "reaction": "5ms", "handling": "1ms",
+  "configurations": [{"name": "halted", "entry": [{"topic": "motors", "priority": "urgent", "repeat": "100ms"}]}]
+})";
+
+std::string bus_name() {
+  return fmt::format("told-{}", ::getpid());
+}
+
+/// What happens beside it: a program asks something, or something is done.
+struct Step {
+  Duration at;
+  std::string asks;
+  std::function<void()> does{};
+};
+struct Told {
+  std::string printed;
+  std::string said;
+  Texts answers;
+};
+
+Told run(std::string_view text, Duration lasting, const std::vector<Step>& steps,
+         PlayedBus::Conditions conditions = {}) {
+  const auto loaded = operate::parse(text, "told.operator.json", amiro::catalogue, 500'000);
+  for (const auto& problem : loaded.problems) UNSCOPED_INFO(problem.place << ": " << problem.what);
+  REQUIRE(loaded.file);
+  Told told;
+  std::unique_ptr<LocalClient> client;
+  std::size_t next = 0;
+  bool greets = false, waits = false;
+  World world{1};
+  world.interrupt(World::start + lasting, SIGINT);
+  PlayedBus bus{world, std::move(conditions), bus_name()};
+  const auto control = operate::Control::open(bus.name());
+  REQUIRE(control);
+  world.inputs[(*control)->descriptor()] = [&]() -> Moment {
+    if (waits) return World::start;
+    return next < steps.size() ? World::start + steps[next].at : Moment::max();
+  };
+  world.beside = [&] {
+    if (waits) {
+      const auto answer = client->heard();
+      if (answer.empty()) return;
+      if (!std::exchange(greets, false)) told.answers.push_back(answer);
+      waits = false;
+    }
+    if (next == steps.size() || world.now() < World::start + steps[next].at) return;
+    if (steps[next].does) return steps[next++].does();
+    if (!client) {
+      client = std::make_unique<LocalClient>(SOCK_SEQPACKET, cli::operator_path(bus_name()));
+      client->say("hello 1 operator");
+      greets = true;
+    } else {
+      client->say(steps[next++].asks);
+    }
+    waits = true;
+  };
+  const operate::RunOptions options{false, 500'000, {}};
+  Captured out{STDOUT_FILENO}, err{STDERR_FILENO};
+  {
+    operate::Runner runner{bus, **control, amiro::catalogue, *loaded.file, options};
+    CHECK(runner.run() == cli::Over::signal);
+    runner.rest();
+    runner.sum_up();
+  }
+  told.printed = out.text();
+  told.said = err.text();
+  CHECK(next == steps.size());
+  return told;
+}
+
+Texts lines_with(const std::string& text, std::string_view begin) {
+  Texts found;
+  std::istringstream lines{text};
+  for (std::string line; std::getline(lines, line);)
+    if (line.starts_with(begin)) found.push_back(line);
+  return found;
+}
+std::size_t count_of(const std::string& text, std::string_view what) {
+  std::size_t count = 0;
+  for (auto at = text.find(what); at != std::string::npos; at = text.find(what, at + what.size())) ++count;
+  return count;
+}
+
+TEST_CASE("operate: each time that its socket is lost it says so, once, and when it is there again") {
+  const std::string path = cli::operator_path(bus_name());
+  const auto loses_it = [&path] {
+    fs::remove(path);
+    fs::create_directory(path);
+  };
+  const auto frees_it = [&path] { fs::remove(path); };
+  // It looks at it five times a second.
+  const auto told =
+      run(file_text, 2200ms,
+          {{100ms, "", loses_it}, {650ms, "", frees_it}, {1100ms, "", loses_it}, {1650ms, "", frees_it}});
+  const std::string lost = "its socket was removed, so that what programs command goes past it: '" + path +
+                           "' exists and is not a socket";
+  const std::string found =
+      "its socket was removed, and is there again: what programs commanded meanwhile went past it";
+  CHECK(lines_with(told.printed, "its socket") == Texts{lost, found, lost, found});
+}
+
+TEST_CASE("operate: it remembers the last twenty changes, its start among them") {
+  std::vector<Step> steps;
+  Duration at = 0s;
+  bool is_here = true;
+  const auto switches = [&](int count) {
+    for (int i = 0; i < count; ++i) {
+      at += 100ms;
+      steps.push_back({at, is_here ? "switch there" : "switch here"});
+      is_here = !is_here;
+    }
+    at += 30ms;
+    steps.push_back({at, "why"});
+  };
+  switches(19);
+  switches(1);
+  switches(1);
+  const auto told = run(file_text, at + 100ms, steps);
+  REQUIRE(told.answers.size() == 24);
+  CHECK(told.answers[0] == "ok\nhere -> there\n");
+  CHECK(told.answers[1] == "ok\nthere -> here\n");
+  CHECK(count_of(told.answers[19], "  started in here\n") == 1);
+  CHECK(count_of(told.answers[19], " -> ") == 19);
+  CHECK(count_of(told.answers[21], "  started in here\n") == 0);
+  CHECK(count_of(told.answers[21], " -> ") == 20);
+  // The oldest goes.
+  const auto first_of = [](const std::string& answer) {
+    return answer.substr(answer.find("  ") + 2, answer.find(": ") - answer.find("  ") - 2);
+  };
+  CHECK(first_of(told.answers[21]) == "here -> there");
+  CHECK(count_of(told.answers[23], " -> ") == 20);
+  CHECK(first_of(told.answers[23]) == "there -> here");
+  CHECK_THAT(told.said, Catch::Contains("operate: 21 changes, "));
+}
+
+TEST_CASE("operate: a request that waits is dropped where another transition comes first, and that is said") {
+  PlayedBus::Conditions conditions;
+  conditions.incoming.push_back(
+      {World::start + 120ms, can::Frame{can::error_class::bus_off, can::max_dlc, {}, can::Format::error}});
+  const auto told =
+      run(file_text, 400ms, {{100ms, "switch there"}, {110ms, "switch here"}, {300ms, "switch halted"}},
+          conditions);
+  CHECK(told.answers ==
+        Texts{"ok\nhere -> there\n",
+              "ok\nhere follows when the last change is over, unless another transition comes first\n",
+              "ok\noperator told is in halted already\n"});
+  CHECK(lines_with(told.printed, "the request ") ==
+        Texts{"the request for here is dropped: another transition came first"});
+  // One that is met is not dropped.
+  const auto met = run(file_text, 400ms, {{100ms, "switch there"}, {110ms, "switch here"}});
+  CHECK_THAT(met.printed, Catch::Contains("\nthere -> here: ") && !Catch::Contains("dropped"));
+}
+
+TEST_CASE("operate: frames that it could not take, or that newer ones replaced, are summed up") {
+  const auto lost = [](std::size_t count) {
+    PlayedBus::Conditions conditions;
+    conditions.listens_to = 10;
+    for (std::size_t i = 0; i < 10 + count; ++i)
+      conditions.incoming.push_back({World::start + 100ms, can::Frame{.id = 0x7F0, .dlc = 8}});
+    return run(file_text, 300ms, {}, conditions).said;
+  };
+  CHECK_THAT(lost(0), !Catch::Contains("lost"));
+  CHECK_THAT(lost(1), Catch::Contains(", 1 frame lost"));
+  CHECK_THAT(lost(2), Catch::Contains(", 2 frames lost"));
+  // Of the set points the bus takes one more, and one waits.
+  const auto replaced = [](Duration until) {
+    PlayedBus::Conditions conditions;
+    conditions.room = 1;
+    conditions.stuck = {{World::start + 150ms, World::start + until}};
+    return run(repeating_text, 800ms, {}, conditions).said;
+  };
+  CHECK_THAT(replaced(350ms), !Catch::Contains("replaced"));
+  CHECK_THAT(replaced(450ms), Catch::Contains(", 1 frame replaced by newer ones before the bus took them"));
+  CHECK_THAT(replaced(650ms), Catch::Contains(", 3 frames replaced by newer ones before the bus took them"));
+}
+
+TEST_CASE("operate: a board that refuses for a reason without a name does not say why") {
+  PlayedBus::Conditions conditions;
+  conditions.incoming.push_back({World::start + 100ms, can::Frame{0x71D, 8, {3, 200, 1}}});
+  CHECK(lines_with(run(file_text, 300ms, {}, conditions).printed, "di_wheel_drive ") ==
+        Texts{"di_wheel_drive refuses odometry: it does not say why"});
+}
+
+}  // namespace tool_clock_operate_told_test
