@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "ocm/reflective/check.hpp"
+
 #include "generator/spec/node_reader.hpp"
 
 namespace ocm::cli::operate {
@@ -181,6 +183,8 @@ class Silences {
     for (const auto& transition : tables_.transitions) {
       if (transition.to != tables_.fall_back || !tables_.leaves(transition, configuration)) continue;
       if (transition.monitor == reflective::by_request) continue;
+      // What the configuration does not ask for it does not miss.
+      if (!reflective::sees(tables_, configuration, tables_.monitors[transition.monitor])) continue;
       for (const auto& term : tables_.monitors[transition.monitor].terms)
         if (term.op == reflective::Op::condition && is(tables_.conditions[term.condition].watched))
           topics.push_back(tables_.conditions[term.condition].topic);

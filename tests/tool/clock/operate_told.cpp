@@ -1,4 +1,4 @@
-// What `operate` tells whoever asks it, prints and sums up where a run is less smooth than others: a socket
+// What `operate` answers, prints and sums up where a run is less smooth than others: a socket
 // that is lost more than once, more changes than it remembers, a request that is dropped, frames that are
 // lost or replaced, a refusal without a reason.
 #include <csignal>

@@ -146,14 +146,16 @@ TEST_CASE("cautions: the first topic of a spec may be a behaviour, and what has 
 }
 
 /// What is said of topics that fall silent, where "free" leads to "halted" by `when`, and to `to` by `other`.
-Said silent(const std::string& when, const std::string& other, const std::string& to = "halted") {
+Said silent(const std::string& when, const std::string& other, const std::string& to = "halted",
+            const std::string& from = R"("from": "free", )") {
   const auto loaded = operate::parse(
       R"({"name": "c", "initial": "free", "fall_back": "halted", "settle": "80ms", "reaction": "5ms", "handling": "1ms",
           "configurations": [{"name": "free", "streams": [{"topic": "ring"}, {"topic": "odometry"}]},
                              {"name": "aside"}, {"name": "halted"}],
           "monitors": [{"name": "first", "when": )" +
           when + R"(}, {"name": "second", "when": )" + other + R"(}],
-          "transitions": [{"from": "free", "to": "halted", "when": "first"},
+          "transitions": [{)" +
+          from + R"("to": "halted", "when": "first"},
                           {"from": "free", "to": ")" +
           to + R"(", "when": "second", "precedence": 1},
                           {"from": "free", "to": "aside", "on_request": true},
@@ -187,6 +189,8 @@ TEST_CASE("cautions: a configuration that values end is to end when they stay aw
   CHECK(silent(off, R"({"refusals": true})").empty());
   CHECK(silent(off, near) == of("proximity_ring"));
   CHECK(silent(off, near, "aside").empty());
+  CHECK(silent(near, off, "halted", "") ==
+        of("proximity_ring"));  // from "aside", too, which does not ask for it
   for (const char* const silence :
        {R"({"age": "ring", "above": "250ms"})", R"({"gap": "ring", "above": "250ms"})",
         R"({"rate": "ring", "below": 15, "window": "1s"})"}) {
