@@ -203,7 +203,6 @@ TEST_CASE("operate: what two monitors look at alike is one condition, and what d
            Pair{R"("ring.sensor_1>5")", R"("ring.sensor_2>5")"},    // frame
            Pair{R"("floor.sensor_1>5")", R"("floor.sensor_2>5")"},  // field
            Pair{R"("ring.sensor_1>5")", R"("ring.sensor_1>6")"},    // limit
-           Pair{wide_band, R"({"where": "ring.sensor_1>3000", "hysteresis": "201"})"},
            Pair{R"({"rate": "ring", "above": 5, "window": "1s"})",
                 R"({"rate": "ring", "above": 5, "window": "2s"})"},
        }) {

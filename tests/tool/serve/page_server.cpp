@@ -288,9 +288,10 @@ TEST_CASE("page server: at its end it says how much was lost of viewers that wer
     }
     test::Captured errors{STDERR_FILENO};
     desk.server.close();
-    CHECK(errors.text() == (lost == 0 ? std::string{}
-                                      : "serve: viewers that were too slow have lost " +
-                                            std::to_string(lost) + " messages\n"));
+    CHECK(errors.text() == (lost == 0
+                                ? std::string{}
+                                : "serve: viewers that were too slow have lost " + std::to_string(lost) +
+                                      (lost == 1 ? " message\n" : " messages\n")));
   }
 }
 
