@@ -124,6 +124,8 @@ class Played(Case):
         self.assertEqual(tool.returncode, 1)
         self.assertIn("AVR is lost: its link is gone", err)
 
+
+class OnSimulatedRobots(Case):
     def sim(self, *arguments):
         sim = self.start("sim", *arguments)
         for line in sim.stderr:
