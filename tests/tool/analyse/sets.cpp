@@ -16,6 +16,7 @@
 #include "cli/analyse/study.hpp"
 #include "cli/shared/messages.hpp"
 #include "tests/tool/captured.hpp"
+#include "unit/host/host_testing.hpp"
 
 namespace tool_analyse_sets_test {
 
@@ -23,21 +24,11 @@ using namespace ocm;
 using namespace ocm::cli::analyse;
 using test::leaving;
 
-/// A folder that goes with it.
-class Folder {
- public:
-  Folder() { REQUIRE(::mkdtemp(path_.data()) != nullptr); }
-  ~Folder() { std::filesystem::remove_all(path_); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  [[nodiscard]] std::string file(const std::string& name) const { return path_ + "/" + name; }
+struct Folder : test::TemporaryDirectory {
   [[nodiscard]] std::string put(const std::string& name, std::string_view text) const {
     std::ofstream{file(name), std::ios::binary} << text;
     return file(name);
   }
-
- private:
-  std::string path_ = (std::filesystem::temp_directory_path() / "sets-XXXXXX").string();
 };
 
 /// Rates as "name period", with the number of a priority behind an @.

@@ -16,6 +16,7 @@
 #include "cli/shared/messages.hpp"
 #include "tests/tool/captured.hpp"
 #include "tests/tool/fleet/played_owner.hpp"
+#include "unit/host/host_testing.hpp"
 
 namespace fleet_map_view_test {
 
@@ -29,15 +30,7 @@ class Bench {
   int code = 0;
   std::string out, err;
 
-  Bench() {
-    std::filesystem::remove_all(folder_);
-    std::filesystem::create_directories(folder_);
-  }
-  ~Bench() { std::filesystem::remove_all(folder_); }
-  Bench(const Bench&) = delete;
-  Bench& operator=(const Bench&) = delete;
-
-  [[nodiscard]] std::string file(const std::string& name) const { return (folder_ / name).string(); }
+  [[nodiscard]] std::string file(const std::string& name) const { return folder_.file(name); }
   /// Empty where there is none.
   [[nodiscard]] std::string content(const std::string& name) const {
     std::ostringstream text;
@@ -62,8 +55,7 @@ class Bench {
   }
 
  private:
-  std::filesystem::path folder_ =
-      std::filesystem::temp_directory_path() / fmt::format("ocm-map-view-{}", ::getpid());
+  TemporaryDirectory folder_;
 };
 
 const std::string image = "P5\n1 1\n255\nx";

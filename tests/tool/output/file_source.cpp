@@ -16,6 +16,7 @@
 #include <catch2/catch.hpp>
 
 #include "cli/logs/inflate.hpp"
+#include "unit/host/host_testing.hpp"
 
 namespace tool_output_file_source_test {
 
@@ -26,19 +27,12 @@ using cli::logs::FileSource;
 /// A file that goes with it.
 class File {
  public:
-  explicit File(std::string_view text) {
-    const int descriptor = ::mkstemp(path_.data());
-    REQUIRE(descriptor >= 0);
-    ::close(descriptor);
-    std::ofstream{path_, std::ios::binary} << text;
-  }
-  ~File() { std::filesystem::remove(path_); }
-  File(const File&) = delete;
-  File& operator=(const File&) = delete;
+  explicit File(std::string_view text) { std::ofstream{path_, std::ios::binary} << text; }
   [[nodiscard]] const std::string& path() const { return path_; }
 
  private:
-  std::string path_ = (std::filesystem::temp_directory_path() / "file-source-XXXXXX").string();
+  test::TemporaryDirectory folder_;
+  std::string path_ = folder_.file("source");
 };
 
 TEST_CASE("file source: its beginning was looked at, and all of it is read, in pieces of any size") {

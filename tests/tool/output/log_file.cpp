@@ -26,6 +26,8 @@
 
 #include "ocm/topics/amiro.hpp"
 
+#include "unit/host/host_testing.hpp"
+
 namespace tool_output_log_file_test {
 
 using namespace ocm;
@@ -38,18 +40,7 @@ constexpr const char* can_be_read = "what was written before can be read";
 /// What `write` makes.
 constexpr std::string_view one_line = "(1000000000.000000) can0 123#00\n";
 
-/// A folder that goes with it.
-class Folder {
- public:
-  Folder() { REQUIRE(::mkdtemp(path_.data()) != nullptr); }
-  ~Folder() { fs::remove_all(path_); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  [[nodiscard]] std::string file(const std::string& name) const { return path_ + "/" + name; }
-
- private:
-  std::string path_ = (fs::temp_directory_path() / "log-file-XXXXXX").string();
-};
+using Folder = test::TemporaryDirectory;
 
 /// How large files may become while it lives; a write beyond that fails.
 class Limited {

@@ -14,14 +14,14 @@
 #include "ocm/host/descriptor.hpp"
 
 #include "tool/captured.hpp"
-#include "tool/environment.hpp"
+#include "unit/host/host_testing.hpp"
 
 namespace serve_address_test {
 
 using ocm::cli::serve::open_in_browser;
 using ocm::cli::serve::page_address;
 using ocm::test::Captured;
-using ocm::test::Variable;
+using ocm::test::Environment;
 
 TEST_CASE("address: token and what is shown are behind the #") {
   CHECK(page_address("http://127.0.0.1:8484/", "", "") == "http://127.0.0.1:8484/");
@@ -34,8 +34,7 @@ TEST_CASE("address: token and what is shown are behind the #") {
 class Browser {
  public:
   Browser() {
-    REQUIRE(::mkdtemp(folder_.data()) != nullptr);
-    const std::string said = folder_ + "/said", program = folder_ + "/xdg-open";
+    const std::string said = folder_.file("said"), program = folder_.file("xdg-open");
     REQUIRE(::mkfifo(said.c_str(), 0600) == 0);
     said_ = ocm::host::Descriptor{::open(said.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC)};
     REQUIRE(said_.get() >= 0);
@@ -44,14 +43,10 @@ class Browser {
         << "for stream in 0 1 2; do its=$(readlink /proc/$$/fd/$stream); echo \"$its\" >&3; done\n";
     REQUIRE(::chmod(program.c_str(), 0700) == 0);
   }
-  ~Browser() {
-    std::error_code none;
-    std::filesystem::remove_all(folder_, none);
-  }
   Browser(const Browser&) = delete;
   Browser& operator=(const Browser&) = delete;
 
-  [[nodiscard]] const std::string& folder() const { return folder_; }
+  [[nodiscard]] const std::string& folder() const { return folder_.path(); }
   /// All that it says to its end; what comes within 20 s.
   [[nodiscard]] std::string says() const {
     std::string text;
@@ -66,7 +61,7 @@ class Browser {
   }
 
  private:
-  std::string folder_ = (std::filesystem::temp_directory_path() / "ocm-browser-XXXXXX").string();
+  ocm::test::TemporaryDirectory folder_;
   ocm::host::Descriptor said_;
 };
 
@@ -74,9 +69,9 @@ TEST_CASE("address: a browser gets it as it is, and none of this program's strea
   for (const char* const display : {"DISPLAY", "WAYLAND_DISPLAY"}) {
     INFO(display);
     const Browser browser;
-    const Variable no_x{"DISPLAY", ""}, no_wayland{"WAYLAND_DISPLAY", ""};
-    const Variable shown{display, ":7"};
-    const Variable path{"PATH", browser.folder() + ":/usr/bin:/bin"};
+    const Environment no_x{"DISPLAY", ""}, no_wayland{"WAYLAND_DISPLAY", ""};
+    const Environment shown{display, ":7"};
+    const Environment path{"PATH", (browser.folder() + ":/usr/bin:/bin").c_str()};
     Captured errors{STDERR_FILENO};
     open_in_browser("http://h/#0f&plot=/gyro.z");
     CHECK(errors.text().empty());
@@ -86,15 +81,15 @@ TEST_CASE("address: a browser gets it as it is, and none of this program's strea
 
 TEST_CASE("address: why no browser opens it") {
   const Browser browser;
-  const Variable no_x{"DISPLAY", ""}, no_wayland{"WAYLAND_DISPLAY", ""};
+  const Environment no_x{"DISPLAY", ""}, no_wayland{"WAYLAND_DISPLAY", ""};
   {
-    const Variable path{"PATH", browser.folder()};
+    const Environment path{"PATH", browser.folder().c_str()};
     Captured errors{STDERR_FILENO};
     open_in_browser("http://h/");
     CHECK(errors.text() == "serve: there is no display: open the address in a browser elsewhere\n");
   }
-  const Variable display{"DISPLAY", ":7"};
-  const Variable path{"PATH", "/nonexistent"};
+  const Environment display{"DISPLAY", ":7"};
+  const Environment path{"PATH", "/nonexistent"};
   Captured errors{STDERR_FILENO};
   open_in_browser("http://h/");
   CHECK(errors.text() ==

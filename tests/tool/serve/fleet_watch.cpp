@@ -29,8 +29,8 @@
 #include "cli/fleet/robot_now.hpp"
 #include "cli/shared/local_link.hpp"
 #include "tool/captured.hpp"
-#include "tool/environment.hpp"
 #include "tool/thread_signals.hpp"
+#include "unit/host/host_testing.hpp"
 
 namespace serve_fleet_watch_test {
 
@@ -133,22 +133,13 @@ RobotNow linked(unsigned index, const std::string& name) {
 }
 
 /// A user's own folder, with a line in it.
-struct Folder {
+struct Folder : test::TemporaryDirectory {
   Folder() {
-    REQUIRE(::mkdtemp(path.data()) != nullptr);
-    REQUIRE(::mkdir((path + "/ocm").c_str(), 0700) == 0);
+    REQUIRE(::mkdir(file("ocm").c_str(), 0700) == 0);
     put_line();
   }
-  ~Folder() {
-    std::error_code none;
-    std::filesystem::remove_all(path, none);
-  }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  [[nodiscard]] std::string line() const { return path + "/line"; }
+  [[nodiscard]] std::string line() const { return file("line"); }
   void put_line() const { std::ofstream{line()} << "a line\n"; }
-
-  std::string path = (std::filesystem::temp_directory_path() / "ocm-watch-XXXXXX").string();
 };
 
 /// A viewer of the robots of such a line.
@@ -200,7 +191,7 @@ struct Desk {
 
   test::Captured errors{STDERR_FILENO};
   Folder folder;
-  test::Variable runtime{"XDG_RUNTIME_DIR", folder.path};
+  test::Environment runtime{"XDG_RUNTIME_DIR", folder.path().c_str()};
   Owner owner;
   Viewers viewers{2};
   Orders orders;
