@@ -39,6 +39,7 @@ class Line final : public cli::fleet::LineEnd {
   [[nodiscard]] std::vector<std::string> take_failed() override { return {}; }
   [[nodiscard]] Refused go(unsigned robot, const SetPoint& to) override {
     if (!refuses.empty() && to != SetPoint{}) return transport::Failure{refuses, "wait"};
+    if (!refuses_stop.empty() && to == SetPoint{}) return transport::Failure{refuses_stop, "wait"};
     said.emplace_back(robot, to);
     robots[robot].progress = to == SetPoint{} ? Progress::stopping : Progress::said;
     robots[robot].located = false;
@@ -76,7 +77,7 @@ class Line final : public cli::fleet::LineEnd {
   RobotNow robots[2];
   std::vector<std::pair<unsigned, SetPoint>> said;
   std::vector<std::pair<unsigned, bool>> pauses;
-  std::string refuses;
+  std::string refuses, refuses_stop;
   std::uint64_t orders = 0;
   std::uint64_t ours[2] = {0, 0};
 
@@ -162,6 +163,36 @@ TEST_CASE("errands: a robot that drives is stopped first, and sent from where it
   desk.step(21s);
   CHECK(desk.says("nothing shows that one stands"));
   CHECK(desk.line.said.size() == 4);
+}
+
+TEST_CASE("errands: it is sent straight only where it is known to stand, and nothing is asked of it") {
+  Desk desk;
+  desk.line.robots[0].located = false;  // nothing is asked of it, and where it stands it has not said yet
+  desk.take(Kind::go, "one", {1, 0});
+  REQUIRE(desk.line.said.size() == 1);
+  CHECK(desk.line.said[0].second == SetPoint{});
+  desk.line.stands(0, Progress::stopped, 0, 0);
+  desk.step();
+  REQUIRE(desk.line.said.size() == 2);
+  CHECK(desk.line.said[1].second == SetPoint{0, 100});
+  desk.line.robots[0].located = true;  // it stands still, and is about to drive
+  desk.take(Kind::go, "one", {0, 1});
+  REQUIRE(desk.line.said.size() == 3);
+  CHECK(desk.line.said[2].second == SetPoint{});
+  CHECK(desk.told.empty());
+}
+
+TEST_CASE("errands: a stop that the line does not take is said, and the robot is not sent") {
+  Desk desk;
+  desk.line.refuses_stop = "there is no robot 0";
+  desk.take(Kind::stop);
+  CHECK(desk.told == std::vector<std::string>{"there is no robot 0"});
+  desk.line.robots[0].located = false;
+  desk.take(Kind::go, "one", {1, 0});
+  CHECK(desk.told == std::vector<std::string>(2, "there is no robot 0"));
+  CHECK(desk.levels == std::vector<Level>(2, Level::error));
+  CHECK_FALSE(desk.errands.busy());
+  CHECK(desk.line.said.empty());
 }
 
 TEST_CASE("errands: what another program drives is not taken from it, and what explores is") {

@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <span>
@@ -75,6 +76,39 @@ TEST_CASE("live bus: what is lost of a bus is in its figures from the first mome
   CHECK(said[State::boards]["findings"][0]["what"] == "3 frames lost on the way to this program");
   CHECK(said[State::bounds]["rows"] == Json::array());
   CHECK(said[State::operator_]["running"] == false);
+}
+
+TEST_CASE("live bus: figures of the bus come four times a second, and boards and response times once") {
+  using std::chrono::milliseconds, std::chrono::seconds;
+  const spec::Model model;
+  std::function<bool()> over;
+  ServeOptions options;
+  options.over = [&over] { return over(); };
+  PageServer server{amiro::catalogue, model, std::move(options), {quiet, true, false}, {quiet}, 500'000};
+  test::Captured address{STDOUT_FILENO};
+  server.open();
+  address.text();
+  const ViewerId viewer = server.viewers().add();
+  for (const State state : {State::bus, State::boards, State::bounds, State::operator_})
+    REQUIRE(server.viewers()
+                .subscribe(viewer, {static_cast<std::uint32_t>(state), server.channels().of(state)})
+                .empty());
+  std::map<State, std::int64_t> count;
+  over = [&, looks = 0]() mutable {  // it looks twice
+    while (const auto message = server.viewers().next(viewer, base::Time{}))
+      ++count[static_cast<State>(message->head[1])];
+    return looks++ == 2;
+  };
+  const auto begin = std::chrono::steady_clock::now();
+  cli::Session session;
+  CHECK(serve_bus(server, session, std::make_unique<QuietBus>(0)) == 0);
+  const auto passed = std::chrono::steady_clock::now() - begin;
+  CHECK(passed >= milliseconds{250});
+  for (const State often : {State::bus, State::operator_}) CHECK(count[often] == 2);
+  for (const State seldom : {State::boards, State::bounds}) {
+    CHECK(count[seldom] >= 1);
+    CHECK(count[seldom] <= 1 + passed / seconds{1});
+  }
 }
 
 /// Keeps what is sent, and has a frame of the gyroscope come behind each.

@@ -230,6 +230,23 @@ TEST_CASE("played log: the bar ten times a second, the bus four times, and board
   }
 }
 
+TEST_CASE("played log: behind whatever is asked the bar and figures of the bus come in the same turn") {
+  Page page;
+  page.subscribe({"/ocm/playback", "/ocm/bus"});
+  int turn = 0;
+  page.serve([&] {
+    Page::Said said = page.said();
+    INFO("before turn " << turn);
+    if (turn != 0) {
+      CHECK(said["/ocm/playback"].size() == 1);
+      CHECK(said["/ocm/bus"].size() == 1);
+    }
+    page.ask("{}");
+    return turn++ != 3;
+  });
+  CHECK(turn == 4);
+}
+
 }  // namespace serve_played_log_test
 
 #endif

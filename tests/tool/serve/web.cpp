@@ -75,6 +75,14 @@ class Client {
   }
   /// What came so far is not looked at again.
   void forget() { heard_.clear(); }
+  /// Whether the server hangs up, whatever it says before; one that is kept is let be for 10 s.
+  [[nodiscard]] bool hangs_up() const {
+    pollfd waits{socket_, POLLIN, 0};
+    char piece[4096];
+    ssize_t size = 1;
+    while (size > 0 && ::poll(&waits, 1, 5'000) == 1) size = ::recv(socket_, piece, sizeof piece, 0);
+    return size <= 0;
+  }
 
  private:
   int socket_ = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
@@ -257,6 +265,25 @@ TEST_CASE(
   CHECK(all.find("text/css; charset=utf-8\r\n") != std::string::npos);
   CHECK(all.ends_with("\r\n\r\n" + long_one));
   CHECK((*server.web)->refused() == 0);
+}
+
+TEST_CASE("web: the connection of what is refused is closed at once, and so is one that asks for it") {
+  Server server;
+  const std::string rest = " HTTP/1.1\r\nHost: " + server.place + "\r\n";
+  for (const std::string& method : {"GET"s, "HEAD"s}) {
+    INFO(method);
+    const Client refused{port_of(server.place)};
+    refused.say(method + " /none" + rest + "\r\n");
+    CHECK(refused.hangs_up());
+    const Client last{port_of(server.place)};
+    last.say(method + " /" + rest + "Connection: close\r\n\r\n");
+    CHECK(last.hangs_up());
+  }
+}
+
+TEST_CASE("web: where no port is named it is one that any program may have") {
+  Server server;
+  CHECK(port_of(server.place) >= 1024);
 }
 
 TEST_CASE("web: by which names a request may mean this server") {

@@ -2,12 +2,14 @@
 
 import base64
 import fcntl
+import glob
 import json
 import math
 import os
 import re
 import resource
 import signal
+import socket
 import sys
 import time
 
@@ -336,6 +338,19 @@ class Robots(Case):
 
     def test_others_join_it(self):
         _, _, _, viewer = self.both()
+        # They hear of it where its robots began.
+        with socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET) as caller:
+            caller.settimeout(30)
+            caller.connect(glob.glob(os.path.join(self.folder, "ocm", "line-*.sock"))[0])
+            caller.send(b"hello 1 stranger")
+            self.assertEqual(caller.recv(65536), b"ok\nserve")
+            caller.send(b"robots 0")
+            rows = [row for row in caller.recv(65536).decode().splitlines() if row.startswith("index=")]
+        robots = [dict(field.split("=", 1) for field in row.split("\t")) for row in rows]
+        self.assertEqual([(robot["name"], robot["origin_known"]) for robot in robots], [("AVR", "1"), ("Arduino", "1")])
+        for robot, start in zip(robots, ((0.4, 0.5, 0), (0.8, 0.5, math.pi / 2))):
+            for value, expected in zip(robot["origin"].split(","), start):
+                self.assertAlmostEqual(float(value), expected, delta=0.02)
         out, err = self.run_tool("goto", "AVR", "0", "20")
         self.assertEqual((out, err), ("AVR: x 20 cm, y 0 cm, heading 0 deg\n", ""))
         robot = self.robot(viewer, "AVR", lambda r: r["at"]["x_m"] > 0.55, "its new place")
