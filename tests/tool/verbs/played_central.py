@@ -25,6 +25,7 @@ class Robot:
         self.deaf = False        # hears nothing
         self.loses = 0           # so many of its next set points
         self.silent = False      # says nothing
+        self.deadline_ms = 2000  # after so long without a word it is lost, as its handshake says
         self.mumbles = False     # says that it is idle, but never where it is
         self.repeats_idle = False  # says that it is idle behind each update, too, and both at once
         self.knows_who = True    # and answers {S,WHO},
@@ -140,7 +141,7 @@ class Robot:
         """What it has to say now."""
         if self.silent:
             return ""
-        handshake = "{H,20,20,0,0,0,90,180,270,2000,0}\n"
+        handshake = f"{{H,20,20,0,0,0,90,180,270,{self.deadline_ms},0}}\n"
         if not self.confirmed:
             if now - self.spoke < 0.3:
                 return ""

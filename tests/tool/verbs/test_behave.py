@@ -144,6 +144,28 @@ class Behave(Case):
         self.assertEqual(behave.returncode, 1, err)
         self.assertIn("follow was ended: stopped", err)
 
+    def test_what_to_do_where_the_board_or_another_program_ended_it(self):
+        """A board that is played follows until it says how that has ended; or it says nothing of its end, and the motors are commanded."""
+        self.start_sim("--without", "di_wheel_drive")
+        others = self.start("send", "--stdin", stdin=subprocess.PIPE)
+        for frame, ended, remedy in (("60D#0004000000000000", "no_sample", "`amiroctl doctor` shows which part does not answer"),
+                                     ("60D#0005000000000000", "line_lost", "put the robot on the line, or go more slowly: docs/behaviours.md has the "
+                                      "least radius for a speed"),
+                                     ("60D#0007000000000000", "late", "streams take the board's time: `amiroctl stop`, then ask for slower ones"),
+                                     ("201#0000000000000000", "stopped", "another program has commanded the robot")):
+            listener = self.listen("follow", "--timeout", "20s")
+            behave = self.start("behave", "follow", "--no-confirm", "--for", "10s")
+            self.assertIn('"E803"', listener.stdout.readline())
+            others.stdin.write("60D#0200000000000000\n608#000000000000\n")  # it follows; and zeros of a sensor, which end nothing
+            others.stdin.flush()
+            self.assertEqual([json.loads(listener.stdout.readline())["data"] for _ in range(2)], ["E803"] * 2, ended)
+            others.stdin.write(frame + "\n")
+            others.stdin.flush()
+            _, err = behave.communicate(timeout=20)
+            self.assertEqual(behave.returncode, 1, err)
+            self.assertTrue(err.endswith(f"amiroctl: behave: follow was ended: {ended}\n          {remedy}\n"), err)
+            self.interrupt(listener)
+
     def test_a_board_that_is_off(self):
         self.start_sim("--without", "di_wheel_drive")
         for arguments in (("--for", "100ms"), ("--force", "--for", "700ms")):

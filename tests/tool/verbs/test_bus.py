@@ -510,13 +510,15 @@ class Scripts(Case):
 
     def test_a_step_in_centuries_is_waited_for(self):
         self.start_sim()
-        listener = self.listen("--commands", "--timeout", "60s")
-        run = self.start("run", "--speed", "0.001", self.script("0s led 1 red\n3000h led 2 green\n"))
-        self.assertIn("FF0000", listener.stdout.readline())
-        self.settle()  # it waits
-        _, err = self.interrupt(run)
-        self.assertEqual(run.returncode, 130, err)
-        self.assertNotIn("green", err)
+        for speed, late in (("0.001", "3000h"), ("0.5", f"{1 << 62}ns")):  # 2^63 ns are the first that no clock has
+            listener = self.listen("--commands", "--timeout", "60s")
+            run = self.start("run", "--speed", speed, self.script(f"0s led 1 red\n{late} led 2 green\n"))
+            self.assertIn("FF0000", listener.stdout.readline())
+            self.settle()  # it waits
+            _, err = self.interrupt(run)
+            self.assertEqual(run.returncode, 130, err)
+            self.assertNotIn("green", err)
+            self.interrupt(listener)
 
     def test_what_was_sent_is_counted_also_where_the_bus_goes(self):
         sim = self.start_sim()

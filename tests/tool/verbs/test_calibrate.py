@@ -125,6 +125,18 @@ class Played(Case):
         self.assertIn("AVR is lost: its link is gone", err)
 
 
+    def test_one_that_falls_silent_is_not_asked_for_longer_than_its_deadline(self):
+        self.avr.knows_compass = False
+        self.avr.deadline_ms = 250
+        tool = self.start("calibrate", "AVR", "--show", "--scan", "200ms")
+        waiting.until(lambda: "{C,0}" in self.avr.heard, "the question")
+        self.avr.silent = True
+        _, err = tool.communicate(timeout=60)
+        self.assertEqual(tool.returncode, 1)
+        self.assertIn("AVR is lost: it has said nothing for its deadline", err)
+        self.assertLess(self.avr.heard.count("{C,0}"), 6)  # one each 700 ms; of a robot that speaks, for 10 s
+
+
 class OnSimulatedRobots(Case):
     def sim(self, *arguments):
         sim = self.start("sim", *arguments)

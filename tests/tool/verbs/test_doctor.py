@@ -1,9 +1,12 @@
 """amiroctl doctor: what it finds on a simulated robot, and that it leaves the robot as it was."""
 
+import contextlib
+import fcntl
 import json
 import os
 import signal
 import struct
+import termios
 import time
 
 from harness import Case, main
@@ -179,6 +182,32 @@ class Doctor(Case):
         out, _ = self.run_tool("--spec", spec, "doctor", "--listen", "60ms", code=1)
         self.assertIn("warning  Brakes: of 2 messages due in 60ms nothing came of Wheels, Driving\n", out)
         self.assertRegex(out, r"(?m)^Brakes +has no status in this spec$")
+
+    def on_a_terminal(self, columns, *arguments, code=0):
+        """The lines that it shows on one that is so wide."""
+        ours, theirs = os.openpty()
+        self.addCleanup(os.close, ours)
+        fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", 50, columns, 0, 0))
+        doctor = self.start(*arguments, stdout=theirs)
+        os.close(theirs)
+        shown = b""
+        with contextlib.suppress(OSError):  # the other end is closed
+            while piece := os.read(ours, 4096):
+                shown += piece
+        _, err = doctor.communicate(timeout=60)
+        self.assertEqual(doctor.returncode, code, err)
+        return shown.decode().replace("\r\n", "\n").splitlines()
+
+    def test_what_a_terminal_has_no_room_for_goes_on_below_its_text(self):
+        spec = os.path.join(os.environ["OCM_SOURCE_DIR"], "examples", "small_car.dbc")
+        self.start_sim("--without", "di_wheel_drive,power_management,light_ring")
+        doctor = ("--no-color", "--spec", spec, "doctor", "--listen")
+        lines = self.on_a_terminal(40, *doctor, "1ms")
+        self.assertEqual(lines[:2], [f"{'BOARD':<14}  {'UP':<10}  RESET", "    SPEC      LOAD  BUS      PUBLISHES"])
+        self.assertEqual(lines[-2:], ["nothing came, and nothing was due:", "--listen T listens longer"])
+        lines = self.on_a_terminal(40, *doctor, "30ms", code=1)
+        self.assertEqual(lines[-5:], ["warning  EngineControl: of 1 message due", "         in 30ms nothing came of Engine", "         is the sender switched on and",
+                                      "         on this bus? `amiroctl stats`", "         measures every period"])
 
     def many(self):
         """A spec of six messages that a board sends every 10 ms."""

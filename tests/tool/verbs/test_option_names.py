@@ -46,6 +46,21 @@ class OneMeaning(Options):
         self.assertEqual(dict(values["--show"]), {"": ["run", "calibrate"], "page|text": ["sim"]})
 
 
+class Offers(Options):
+    def test_formats(self):
+        """Wherever one is named, a shell completes it."""
+        found = collections.Counter()
+        for verb in self.verbs():
+            for name, value in self.options(verb):
+                if value != "FORMAT" or verb == ["replay"]:  # whose --from takes a time, too
+                    continue
+                found[name] += 1
+                offered = self.run_tool("completion", "--words", "--", *verb, name, "")[0].splitlines()
+                self.assertLessEqual({"candump", "csv", "pcapng"}, set(offered), (verb, name))
+        self.assertGreater(found["--from"], 4)
+        self.assertGreater(found["--to"], 2)
+
+
 class Suggestions(Options):
     def test_a_time_by_the_name_of_another_verb(self):
         times = ("--duration", "--timeout", "--for")

@@ -230,6 +230,14 @@ class Plot(Case):
             out, _ = self.run_tool("plot", "--live", *words, "--port", "0", "--duration", "100ms")
             self.assertRegex(out, rf"^http://127\.0\.0\.1:[0-9]+/#plot={re.escape(shows)}\n$")
 
+    def test_a_day_is_named_where_the_clock_of_the_log_knows_it(self):
+        """Times of the first year are no days: they count from the start of a machine, or of a recording."""
+        path = os.path.join(self.folder, "clock.log")
+        for second, when in ((1, "0 s"), (365 * 24 * 3600, "0 s"), (365 * 24 * 3600 + 1, "1971-01-01 00:00:01 UTC, 0 s")):
+            with open(path, "w", encoding="ascii") as file:
+                file.write(f"({second}.000000) can0 608#{i16(0, 0, 0)}\n")
+            self.assertIn(f"set label 2 '{when}' at ", self.script(path, "gyro.z"))
+
     def test_specs_of_one_interface_each(self):
         """The same identifier is another message on each interface, and none on a third one."""
         specs = []

@@ -8,6 +8,7 @@ import subprocess
 import time
 
 from harness import Case, main, waiting
+from played_adapter import Adapter
 
 NONE, ARRIVED, STOPPED = 0, 1, 2  # as the spec numbers them
 
@@ -294,18 +295,36 @@ class Travel(Case):
         self.assertIn("another program commands motors", err)
         self.interrupt(drive)
 
+    def falls_silent(self, answers):
+        """A travel on an adapter of its own, and what is sent there. The board says that it does nothing, `answers` to the set
+        point, and no more."""
+        asked = self.run_tool("publish", "behaviour", "50ms", "--dry-run")[0].strip()
+        adapter = Adapter({asked: ["t60D80000000000000000\r"], "20B#102700000000E803": answers})
+        self.addCleanup(adapter.unplug)
+        travel = self.start("--bus", f"slcan:{adapter.path}", "travel", "10cm")
+        waiting.until(lambda: any(frame.startswith("20B#") for frame in adapter.frames), "it begins")
+        del adapter.script[asked]
+        return travel, asked, adapter.frames
+
     def test_refused_and_nobody_there(self):
         sim = self.start_sim()
         _, err = self.run_tool("travel", "10m", "--speed", "1cm/s", code=1)
         self.assertIn("di_wheel_drive refuses travel: out_of_range", err)
         self.interrupt(sim)
         self.start_sim("--without", "di_wheel_drive")
+        silent = ((self.falls_silent([]), "no behaviour within 1.2s, so the travel was ended\n          is board di_wheel_drive powered and on slcan:"),
+                  (self.falls_silent(["t60D80100102700000000\r"]), "di_wheel_drive has been silent for 1.2s, so zeros were sent; THE ROBOT MAY STILL MOVE"))
         begin = time.monotonic()
         _, err = self.run_tool("travel", "10cm", code=1)
         self.assertGreater(time.monotonic() - begin, 1.2)  # four times 300 ms, counted from each question
         self.assertIn("no behaviour within 1.2s, so the travel was not begun", err)
         self.assertIn("di_wheel_drive", err)
         self.assertNotIn("has not answered", err)  # which says the same
+        for (travel, asked, sent), words in silent:  # meanwhile
+            _, err = travel.communicate(timeout=20)
+            self.assertEqual(travel.returncode, 1, err)
+            self.assertIn(f"amiroctl: travel: {words}", err)
+            self.assertEqual(sent.count(asked), 1 + 3, sent)  # before it, and each time that nothing had come for 300 ms
 
 
 if __name__ == "__main__":
