@@ -153,4 +153,22 @@ TEST_CASE("live: a bus that always has a frame is left behind a second of work, 
   }
 }
 
+TEST_CASE("live: a bus that always has a frame has that second of work each time") {
+  World world{1};
+  std::vector<Moment> times;
+  for (int i = 0; i < 50'000; ++i) times.push_back(World::start + i * 100us);
+  PlayedBus bus{world, frames_at(times)};
+  cli::Live live{bus, [] {}};
+  for (int turns = 0; turns < 2; ++turns) {
+    const Moment until = world.now() + 500ms;
+    const auto over = live.receive(until, [&](const can::Received&) {
+      world.pass(150us);  // it takes longer than to the next
+      return true;
+    });
+    CHECK(over == cli::Over::time);
+    CHECK(world.now() > until + 1s - 20ms);
+    CHECK(world.now() < until + 1s + 20ms);
+  }
+}
+
 }  // namespace tool_clock_live_test

@@ -93,6 +93,17 @@ TEST_CASE("messages: unhurried ones wait for no reader, and come in their order"
   CHECK(pipe.read() == "as usual\n");
 }
 
+TEST_CASE("messages: a line has its end, also where it ends with one of the pieces in which it is written") {
+  const PipedStderr pipe;
+  const UnhurriedMessages unhurried;
+  for (const std::size_t size : {0UL, 1UL, 255UL, 256UL, 257UL, 511UL, 512UL, 513UL, 4096UL}) {
+    CAPTURE(size);
+    const std::string line(size, 'x');
+    remark(line);
+    CHECK(pipe.read() == line + "\n");
+  }
+}
+
 TEST_CASE("messages: held ones are counted, and written when they are held no more") {
   const PipedStderr pipe;
   {

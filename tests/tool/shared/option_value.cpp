@@ -2,6 +2,8 @@
 #include "cli/shared/option_value.hpp"
 
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <catch2/catch.hpp>
 
@@ -27,6 +29,34 @@ TEST_CASE("option values: a whole number within bounds, both included") {
   CHECK(refused(refuse_text(accepted, "5")) == "taken");
   CHECK(refused(refuse_text(accepted_whole(0, UINT64_MAX, "any"), "18446744073709551615")) == "taken");
   CHECK(refused(refuse_text(accepted_whole(0, UINT64_MAX, "any"), "18446744073709551616")) != "taken");
+}
+
+TEST_CASE("option values: zeros before a number, and its sign, count for nothing") {
+  for (const auto& [text, number] :
+       std::vector<std::pair<std::string, std::string>>{{"10", "10"},
+                                                        {"010", "10"},
+                                                        {"+10", "10"},
+                                                        {"+010", "10"},
+                                                        {"0", "0"},
+                                                        {"000", "0"},
+                                                        {"+0", "0"},
+                                                        // What has more than digits stays as it is.
+                                                        {"", ""},
+                                                        {"+", "+"},
+                                                        {"++1", "++1"},
+                                                        {"-010", "-010"},
+                                                        {"0x0A", "0x0A"},
+                                                        {"01.5", "01.5"}}) {
+    CAPTURE(text);
+    CHECK(without_leading_zeros(text) == number);
+  }
+  const Accepted accepted = accepted_whole(0, 10, "0 to 10");
+  CHECK(refused(refuse_text(accepted, "010")) == "taken");
+  CHECK(refused(refuse_text(accepted, "011")) == "011: invalid value; write 0 to 10");
+  for (const std::string text : {"+", "++1", "0x", "/1", ":1"}) {
+    CAPTURE(text);
+    CHECK(refused(refuse_text(accepted, text)) == text + ": invalid value; write 0 to 10");
+  }
 }
 
 TEST_CASE("option values: a number within bounds, both included") {

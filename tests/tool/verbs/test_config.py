@@ -301,6 +301,16 @@ class Config(harness.Case):
         self.environment["AMIROCTL_LOOP"] = "false"
         self.run_tool("replay", log, "--dry-run")
 
+    def test_a_variable_of_a_former_name_sets_nothing_where_the_option_does_not_take_it(self):
+        """It may be meant for another verb, in which the name has another meaning by now."""
+        log = os.path.join(self.folder, "a.log")
+        with open(log, "w", encoding="utf-8") as file:
+            file.write("(1.0) can0 605#00D20000\n")
+        self.environment["AMIROCTL_FROM_FORMAT"] = "rubbish"
+        self.assertEqual(self.run_tool("replay", log, "--dry-run")[0].count("605#"), 1)
+        self.environment["AMIROCTL_FROM"] = "rubbish"
+        self.assertIn("amiroctl: AMIROCTL_FROM=rubbish: invalid value\n", self.run_tool("replay", log, "--dry-run", code=2)[1])
+
     def test_a_table_without_a_key(self):
         for text in ("[lisen]", "lisen = {}", "[lisen.deeper]"):
             self.write("# a comment\n" + text + "\n")
