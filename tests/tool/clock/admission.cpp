@@ -1,13 +1,19 @@
 // What `publish` says of a bus before it asks a board, word for word, and what becomes of a behaviour that a
 // board was asked for.
 #include <algorithm>
+#include <cstddef>
+#include <cstdio>
+#include <fcntl.h>
 #include <sstream>
 #include <string>
+#include <sys/ioctl.h>
 #include <unistd.h>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "ocm/host/descriptor.hpp"
 #include "ocm/topics/amiro.hpp"
 
 #include "cli/command/behaviour_watch.hpp"
@@ -17,6 +23,7 @@
 #include "tests/tool/captured.hpp"
 #include "tests/tool/clock/played_bus.hpp"
 #include "tests/tool/golden.hpp"
+#include "tests/tool/pseudo_terminal.hpp"
 
 namespace tool_clock_admission_test {
 
@@ -240,6 +247,70 @@ TEST_CASE("admission: a stream that is asked for without a period has that of it
   std::string row;
   while (row.find(", asked for") == std::string::npos && std::getline(lines, row)) continue;
   CHECK_THAT(row, Catch::Matches("71B +di_wheel_drive_status/identity +1s +1s .*, asked for"));
+}
+
+TEST_CASE(
+    "admission: what comes in a wrong length only is not in the spec, and what has its length once is") {
+  const auto row_of_608 = [](std::vector<Comes> comes) {
+    const Row row{
+        {"publish", "mag", "50ms"}, {.force = false, .explain = true, .listen = 100ms}, std::move(comes)};
+    std::istringstream lines{said(row)};
+    for (std::string line; std::getline(lines, line);)
+      if (line.starts_with("608 ")) return line;
+    return std::string{};
+  };
+  const Comes wrong{frame(0x608, {1}), 1ms, 33ms}, right{frame(0x608, {0, 0, 0, 0, 0, 0}), 40ms, 1s};
+  CHECK_THAT(row_of_608({wrong}), Catch::StartsWith("608       not in the spec  "));
+  CHECK_THAT(row_of_608({wrong, right}), Catch::StartsWith("608       gyroscope  "));
+  CHECK_THAT(row_of_608({right}), Catch::StartsWith("608       gyroscope  "));
+}
+
+TEST_CASE("admission: on a narrow terminal each line is broken, and goes on behind four blanks") {
+  constexpr std::size_t columns = 40;
+  const PseudoTerminal terminal;
+  winsize size{};
+  size.ws_row = 24;
+  size.ws_col = columns;
+  REQUIRE(::ioctl(terminal.descriptor(), TIOCSWINSZ, &size) == 0);
+  const cli::AdmissionOptions explained{.force = false, .explain = true, .listen = 100ms};
+  const std::vector<std::string_view> words{"publish", "mag", "1ms"};
+  const auto command = cli::words::CommandParser{amiro::catalogue}.parse_line(words);
+  REQUIRE(command.ok());
+  cli::RefusalWatch refusals{amiro::catalogue, "publish", cli::Confirm::yes};
+  World world{1};
+  PlayedBus bus{world, {}};
+  std::fflush(stdout);
+  const host::Descriptor before{::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3)};
+  ::dup2(terminal.descriptor(), STDOUT_FILENO);
+  const Leaving left = leaving([&] { cli::admit(amiro::catalogue, bus, *command, explained, refusals); });
+  std::fputs("the end\n", stdout);
+  std::fflush(stdout);
+  ::dup2(before.get(), STDOUT_FILENO);
+  CHECK_FALSE(left.code);
+  const std::string text = terminal.shown("the end\r\n");
+  CAPTURE(text);
+  // The head, three frames that are asked for, what is not known, the shortest period, and the load.
+  std::size_t whole = 0, broken = 0;
+  bool goes_on = false;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = text.find("\r\n", at);
+    REQUIRE(end != std::string::npos);
+    const std::string line = text.substr(at, end - at);
+    at = end + 2;
+    CHECK(line.size() <= columns);
+    const std::size_t blanks = line.find_first_not_of(' ');
+    if (blanks == 0) {
+      ++whole;
+      goes_on = false;
+      continue;
+    }
+    CHECK(blanks == 4);
+    if (!goes_on) ++broken;
+    goes_on = true;
+  }
+  CHECK(whole == 8);  // with the end
+  CHECK(broken == 7);
+  CHECK_THAT(text, Catch::Contains("\r\nthe shortest period that passes beside\r\n    what was heard is "));
 }
 
 // --- what becomes of a behaviour ---

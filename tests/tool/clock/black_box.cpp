@@ -109,6 +109,33 @@ TEST_CASE("black box: by a clock that is behind, the files of runs before are th
   std::filesystem::remove_all(folder);
 }
 
+TEST_CASE("black box: of the files in its folder only recordings of its operator are counted, and deleted") {
+  World world{1};
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / ("ocm-black-box-" + std::to_string(world.random()));
+  std::filesystem::create_directories(folder);
+  const std::vector<std::string> others{"other-20260131T101504.212.black-box.log", "test-notes.txt",
+                                        "test-20260131T101504.212.black-box.log.txt",
+                                        "tests-20260131T101504.212.black-box.log", "test.black-box.log"};
+  for (const auto& name : others) std::ofstream{folder / name} << "of others\n";
+  for (const char* const name :
+       {"test-20260131T101504.212.black-box.log", "test-20260131T101504.500.black-box.log"})
+    std::ofstream{folder / name} << "(1.000000) can0 123#00\n";
+  operate::BlackBox box{{folder.string(), 10s, 1}, "test", "can0", amiro::catalogue};
+  const base::Time now{24h * 365 * 57};
+  box.add(log::Entry{now, can::Frame{0x608, 6, {}}}, cli::Clock::now());
+  const auto recording = box.take(cli::Clock::now(), now);
+  CHECK(box.write(recording));
+  std::vector<std::string> expected = others, found;
+  expected.push_back(std::filesystem::path{recording.path}.filename().string());
+  for (const auto& each : std::filesystem::directory_iterator{folder})
+    found.push_back(each.path().filename().string());
+  std::sort(expected.begin(), expected.end());
+  std::sort(found.begin(), found.end());
+  CHECK(found == expected);
+  std::filesystem::remove_all(folder);
+}
+
 /// A black box in a folder that goes with it.
 struct Boxed {
   std::string folder = std::filesystem::temp_directory_path() /

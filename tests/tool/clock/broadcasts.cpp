@@ -108,6 +108,21 @@ TEST_CASE("broadcasts: once, and again and again, at times that do not drift") {
   }
 }
 
+TEST_CASE("broadcasts: what is to last for a nanosecond is sent once, and without an end until a signal") {
+  const Silence silence;
+  for (const Duration lasting : {1ns, 0ns}) {
+    CAPTURE(lasting.count());
+    World world{1};
+    world.interrupt(World::start + 2s, SIGINT);
+    PlayedBus bus{world, {}};
+    Timeline timeline{bus, truck, "set", Timeline::Others::allowed, cli::Confirm::no, {}};
+    timeline.carry_out(command(0, 1, client::Repeat{500ms, lasting}));
+    CHECK(timeline.wait_for_end() == (lasting > 0ns));
+    CHECK(timeline.finish());
+    CHECK(Listener{bus.sent()}.values[0].size() == (lasting > 0ns ? 1 : 4));
+  }
+}
+
 TEST_CASE("broadcasts: a source has one at a time, and the next value waits for its turn") {
   const Silence silence;
   World world{1};

@@ -757,6 +757,37 @@ TEST_CASE("set: what was not sent is counted and said, with the reason") {
   CHECK(stuck(150ms, 1700ms) == five + cli::still_moving + "\n" + remedy);
 }
 
+TEST_CASE("set, drive: what is to last for a nanosecond is over with its first frame") {
+  const Silence silence;
+  const std::vector<std::string_view> words{"led", "1", "red"};
+  auto led = cli::words::CommandParser{amiro::catalogue}.parse_line(words);
+  REQUIRE(led.ok());
+  led->repeat = client::Repeat{100ms, 1ns};
+  for (const client::Command& command : {*led, drive(1ns)}) {
+    CAPTURE(command.hold.has_value());
+    World world{1};
+    world.interrupt(World::start + 1s, SIGINT);
+    PlayedBus bus{world, {}};
+    Timeline timeline{bus, amiro::catalogue, "set", Timeline::Others::allowed, cli::Confirm::no, {}};
+    timeline.carry_out(command);
+    CHECK(timeline.wait_for_end());
+    CHECK(timeline.finish());
+    CHECK(world.now() - World::start < 50ms);
+    REQUIRE(bus.sent().size() == (command.hold ? 2 : 1));  // a drive ends with rest
+    CHECK(bus.sent().front().frame == command.frames.front());
+    CHECK(cli::is_rest(bus.sent().back().frame) == command.hold.has_value());
+  }
+  // Without a time it goes on until a signal.
+  led->repeat = client::Repeat{100ms, {}};
+  World world{1};
+  world.interrupt(World::start + 1s, SIGINT);
+  PlayedBus bus{world, {}};
+  Timeline timeline{bus, amiro::catalogue, "set", Timeline::Others::allowed, cli::Confirm::no, {}};
+  timeline.carry_out(*led);
+  CHECK_FALSE(timeline.wait_for_end());
+  CHECK(bus.sent().size() == 10);
+}
+
 TEST_CASE("drive: of a script whose program was stopped, whenever that was, one step at most is late") {
   const auto runs = static_cast<std::uint64_t>(explored(2000));
   const Silence silence;

@@ -1,8 +1,9 @@
 // What `operate` answers, prints and sums up where a run is less smooth than others: a socket
 // that is lost more than once, more changes than it remembers, a request that is dropped, frames that are
-// lost or replaced, a refusal without a reason.
+// lost or replaced, a refusal without a reason, values that are no number.
 #include <csignal>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -17,10 +18,13 @@
 #include <fmt/format.h>
 
 #include "ocm/can/error_frame.hpp"
+#include "ocm/protocol/codec.hpp"
+#include "ocm/protocol/identifier.hpp"
 #include "ocm/topics/amiro.hpp"
 
 #include "cli/operate/runner.hpp"
 #include "cli/shared/operator_link.hpp"
+#include "generator/spec/spec.hpp"
 #include "tests/tool/captured.hpp"
 #include "tests/tool/clock/played_bus.hpp"
 #include "tests/tool/local_client.hpp"
@@ -71,8 +75,8 @@ struct Told {
 };
 
 Told run(std::string_view text, Duration lasting, const std::vector<Step>& steps,
-         PlayedBus::Conditions conditions = {}) {
-  const auto loaded = operate::parse(text, "told.operator.json", amiro::catalogue, 500'000);
+         PlayedBus::Conditions conditions = {}, const protocol::Catalogue& catalogue = amiro::catalogue) {
+  const auto loaded = operate::parse(text, "told.operator.json", catalogue, 500'000);
   for (const auto& problem : loaded.problems) UNSCOPED_INFO(problem.place << ": " << problem.what);
   REQUIRE(loaded.file);
   Told told;
@@ -109,7 +113,7 @@ Told run(std::string_view text, Duration lasting, const std::vector<Step>& steps
   const operate::RunOptions options{false, 500'000, {}};
   Captured out{STDOUT_FILENO}, err{STDERR_FILENO};
   {
-    operate::Runner runner{bus, **control, amiro::catalogue, *loaded.file, options};
+    operate::Runner runner{bus, **control, catalogue, *loaded.file, options};
     CHECK(runner.run() == cli::Over::signal);
     runner.rest();
     runner.sum_up();
@@ -231,6 +235,45 @@ TEST_CASE("operate: a board that refuses for a reason without a name does not sa
   conditions.incoming.push_back({World::start + 100ms, can::Frame{0x71D, 8, {3, 200, 1}}});
   CHECK(lines_with(run(file_text, 300ms, {}, conditions).printed, "di_wheel_drive ") ==
         Texts{"di_wheel_drive refuses odometry: it does not say why"});
+}
+
+TEST_CASE("operate: values that are no number are summed up") {
+  const auto shop = spec::parse(
+      R"({"robot": "Shop", "namespace": "shop", "bus": {"bit_rate": 500000, "source": "decided"},
+          "boards": [{"name": "main_board", "mcu": "STM32F103", "source": "decided"}],
+          "topics": [{"name": "scale", "id": "0x11", "board": "main_board", "deadline": "50ms", "source": "decided",
+                      "frames": [{"fields": [{"name": "weight", "byte": 0, "type": "f32"}]}]}]})",
+      "shop.json");
+  for (const auto& problem : shop.problems) UNSCOPED_INFO(problem.place << ": " << problem.what);
+  REQUIRE(shop.spec);
+  constexpr std::string_view weighing_text = R"({
+    "name": "told", "initial": "here", "fall_back": "halted", "settle": "60ms", "reaction": "5ms", "handling": "1ms",
+    "configurations": [{"name": "here", "streams": [{"topic": "scale", "period": "50ms"}]},
+                       {"name": "halted", "streams": [{"topic": "scale", "period": "50ms"}]}],
+    "monitors": [{"name": "heavy", "when": "scale.weight>5"}],
+    "transitions": [{"from": "here", "to": "halted", "when": "heavy"}, {"from": "halted", "to": "here", "on_request": true}]
+  })";
+  const auto said_of = [&](const std::vector<std::int64_t>& weights) {
+    const auto& layout = shop.spec->catalogue().find("scale")->frames[0];
+    PlayedBus::Conditions conditions;
+    Moment at = World::start + 100ms;
+    for (const std::int64_t raw : weights) {
+      can::Frame frame{
+          protocol::Identifier{protocol::Direction::sensor, protocol::Priority::medium, layout.id}.encode(),
+          layout.dlc(),
+          {}};
+      protocol::put(frame.data, layout.fields[0].position, raw);
+      conditions.incoming.push_back({at, frame});
+      at += 50ms;
+    }
+    return run(weighing_text, 400ms, {}, conditions, shop.spec->catalogue()).said;
+  };
+  constexpr std::int64_t one = 0x3F80'0000, infinite = 0x7F80'0000, none = 0x7FC0'0000;
+  CHECK_THAT(said_of({one, one}), Catch::Contains("operate: 0 changes, ") && !Catch::Contains("number"));
+  CHECK_THAT(said_of({one, none, none}),
+             Catch::Contains("operate: 0 changes, ") && Catch::Contains(", 2 values that are no number"));
+  // What is beyond all numbers is above the limit.
+  CHECK_THAT(said_of({infinite}), Catch::Contains("operate: 1 change, ") && !Catch::Contains("number"));
 }
 
 }  // namespace tool_clock_operate_told_test

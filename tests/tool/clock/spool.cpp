@@ -121,6 +121,30 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("spool: what was begun last becomes part of the one file, however short it is") {
+  const auto now = std::filesystem::file_time_type::clock::now();
+  for (const std::string last : {"", "1", "one\n"}) {
+    CAPTURE(last);
+    const Spooled spooled;
+    const auto put = [&](const char* name, const std::string& text, auto time) {
+      std::ofstream{spooled.folder / name} << text;
+      std::filesystem::last_write_time(spooled.folder / name, time);
+    };
+    put("test.running-0.log", "zero\n", now - 1s);
+    put("test.running-1.log", last, now);
+    operate::Spool spool{spooled.folder.string(), "test", 10s, amiro::catalogue};
+    const auto left =
+        spool.recover((spooled.folder / "killed.log").string(), (spooled.folder / "killed-2.log").string());
+    REQUIRE(left);
+    CHECK(left->files == std::vector<std::string>{(spooled.folder / "killed.log").string()});
+    CHECK_FALSE(left->lost.has_value());
+    std::ostringstream text;
+    text << std::ifstream{spooled.folder / "killed.log"}.rdbuf();
+    CHECK(text.str() == "zero\n" + last);
+    CHECK_FALSE(std::filesystem::exists(spooled.folder / "test.running-1.log"));
+  }
+}
+
 TEST_CASE("spool: what cannot be kept under another name stays where it is, and that is said") {
   const Spooled spooled;
   const std::string left = (spooled.folder / "test.running-1.log").string();

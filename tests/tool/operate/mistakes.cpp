@@ -331,6 +331,21 @@ TEST_CASE("operate: of a set point that is outside the spec the field is named t
   CHECK(remedy(R"("fan": "10", "watts": "20")") == "minutes takes 1 to 30");
 }
 
+TEST_CASE("operate: what is wrong is said in the order of the file, whatever is read first") {
+  // Where it begins is looked at when all configurations are known, and transitions behind those.
+  const auto loaded = operate::parse(
+      R"({"name": "order", "initial": "al",
+          "transitions": [{"from": "all", "to": "halted", "when": "near"}],
+          "fall_back": "haltde", "settle": "60ms", "reaction": "20ms", "handling": "1ms",
+          "configurations": [{"name": "all", "streams": [{"topic": "rnig"}]}, {"name": "halted"}]})",
+      "order", amiro::catalogue, 500'000);
+  std::vector<std::string> places;
+  for (const auto& problem : loaded.problems) places.push_back(problem.place);
+  CHECK(places == std::vector<std::string>{"order:1: /initial", "order:2: /transitions/0/when",
+                                           "order:3: /fall_back",
+                                           "order:4: /configurations/0/streams/0/topic"});
+}
+
 TEST_CASE("operate: where a file has no monitor at all one is to be added") {
   const auto loaded = operate::parse(
       R"({"name": "blind", "initial": "all", "fall_back": "halted", "settle": "60ms", "reaction": "20ms", "handling": "1ms",

@@ -2,7 +2,11 @@
 // fast enough and on one that is not.
 #include "cli/operate/study.hpp"
 
+#include <cstdint>
 #include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include <catch2/catch.hpp>
 
@@ -149,6 +153,58 @@ TEST_CASE("operate: of what others send the frame that takes longest is named, o
   REQUIRE(study.doubts.size() == 1);
   CHECK_THAT(study.doubts[0].what, Catch::StartsWith("in \"all\" what others send takes up to ") &&
                                        Catch::EndsWith(", its deadline is 5 ms"));
+}
+
+TEST_CASE("operate: the least of whole milliseconds that is enough is offered, and no more") {
+  // At 1 kbit/s all that takes part is of whole milliseconds.
+  constexpr std::uint32_t bit_rate = 1'000;
+  constexpr std::int64_t ms = 1'000'000;
+  const auto oven = spec::parse(
+      R"({"robot": "Oven", "namespace": "oven", "bus": {"bit_rate": 10000, "source": "decided"},
+          "boards": [{"name": "main_board", "mcu": "STM32F103", "source": "decided"}],
+          "topics": [{"name": "heat", "id": "0x11", "board": "main_board", "deadline": "5s", "source": "decided",
+                      "frames": [{"fields": [{"name": "value", "byte": 0, "type": "u8"}]}]}]})",
+      "oven.json");
+  INFO(of(oven.problems));
+  REQUIRE(oven.spec);
+  struct Found {
+    std::int64_t over_after;
+    std::vector<std::string> remedies;
+  };
+  const auto found = [&](std::int64_t settle, std::int64_t above) {
+    const auto loaded = operate::parse(
+        R"({"name": "warm", "initial": "all", "fall_back": "all", "reaction": "4ms", "handling": "2ms", "settle": ")" +
+            std::to_string(settle) +
+            R"(ms", "configurations": [{"name": "all", "streams": [{"topic": "heat", "period": "5s"}]}],
+            "monitors": [{"name": "silent", "when": {"age": "heat", "above": ")" +
+            std::to_string(above) + R"(ms"}}]})",
+        "warm", oven.spec->catalogue(), bit_rate);
+    INFO(of(loaded.problems));
+    REQUIRE(loaded.file);
+    const auto study = operate::study(*loaded.file, bit_rate);
+    REQUIRE(study.changes.size() == 1);
+    Found what{study.changes[0].over_after, {}};
+    for (const auto& doubt : study.doubts) what.remedies.push_back(doubt.remedy);
+    return what;
+  };
+  const auto calm = found(5'000, 60'000);
+  CHECK(calm.remedies.empty());
+  REQUIRE(calm.over_after % ms == 0);
+  const std::int64_t settle = calm.over_after / ms;
+  const auto too_soon = found(settle - 1, 60'000);
+  CHECK(too_soon.over_after == calm.over_after);
+  CHECK(too_soon.remedies ==
+        std::vector<std::string>{"\"settle\": \"" + std::to_string(settle) + "ms\" or longer"});
+  CHECK(found(settle, 60'000).remedies.empty());
+  // An age must be above what samples are apart.
+  const auto restless = found(5'000, 1'000).remedies;
+  REQUIRE(restless.size() == 1);
+  constexpr std::string_view begins = "\"above\": \"";
+  REQUIRE(restless[0].starts_with(begins));
+  const std::int64_t above = std::stoll(restless[0].substr(begins.size()));
+  CHECK(restless[0] == std::string{begins} + std::to_string(above) + "ms\" or longer");
+  CHECK(found(5'000, above - 1).remedies == restless);
+  CHECK(found(5'000, above).remedies.empty());
 }
 
 }  // namespace operate_study_test

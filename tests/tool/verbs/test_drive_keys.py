@@ -358,6 +358,21 @@ class Keys(harness.Case):
         out, _ = self.interrupt(self.listener)
         self.assertEqual(self.objects(out)[-1]["data"], REST)
 
+    def test_an_output_that_no_program_reads_any_more(self):
+        """It ends with the motors at rest, and the terminal is set back."""
+        process = self.drive(stdout=subprocess.PIPE)
+        self.assertIn("rests", process.stdout.readline())
+        os.write(self.primary, UP)
+        self.assertIn("forward", process.stdout.readline())
+        process.stdout.close()
+        os.write(self.primary, b"+")  # a line that says so
+        process.wait(timeout=60)
+        self.assertEqual(process.returncode, 128 + signal.SIGPIPE)
+        self.assertEqual(termios.tcgetattr(self.secondary), self.before)
+        self.settle()
+        out, _ = self.interrupt(self.listener)
+        self.assertEqual(self.objects(out)[-1]["data"], REST)
+
     def test_another_commander(self):
         other = self.start("drive", "5cm/s")
         harness.waiting.until(lambda: self.listener.stdout.readline(), "its set points")
