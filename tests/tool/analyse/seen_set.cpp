@@ -2,9 +2,11 @@
 #include "cli/analyse/seen_set.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cstdint>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <catch2/catch.hpp>
@@ -28,7 +30,7 @@ const std::vector<std::uint8_t> six(6);
 /// Requests of the gyroscope and of the behaviour. [spec/topics.json: 0x08 and 0x0D]
 constexpr std::uint32_t of_gyroscope = 0x208, of_accelerometer = 0x209, of_behaviour = 0x20D;
 
-BusSet seen(const std::vector<Sent>& frames) {
+BusSet seen(const std::vector<Sent>& frames, std::vector<Rate> given = {}) {
   Arrivals log;
   for (const Sent& sent : frames) {
     can::Frame frame;
@@ -38,7 +40,7 @@ BusSet seen(const std::vector<Sent>& frames) {
     log.all.push_back({sent.ms * ms, {}, frame.dlc, frame});
   }
   Paces paces;
-  return seen_set(log, amiro::catalogue, nullptr, {}, paces);
+  return seen_set(log, amiro::catalogue, nullptr, std::move(given), paces);
 }
 
 std::set<std::int64_t> periods(const BusSet& set) {
@@ -99,6 +101,27 @@ TEST_CASE("seen set: a topic has the priority with which it came last", "[shared
   const auto set = seen({{0, 0x608, six}, {50, 0x508, six}});
   REQUIRE(set.entries.size() == 1);
   CHECK(set.entries[0].head.id == 0x508);
+}
+
+TEST_CASE("seen set: a rate without a priority means that of the log, whatever one before it said",
+          "[shared]") {
+  Rate low, plain;
+  low.name = "gyro";
+  low.period = std::chrono::milliseconds{30};
+  low.has_priority = true;
+  low.priority = protocol::Priority::low;
+  plain.name = "gyroscope";
+  plain.period = std::chrono::milliseconds{20};
+  const auto check = [](const std::vector<Rate>& given, std::uint32_t id, std::int64_t period) {
+    const auto set = seen({{0, 0x508, six}, {50, 0x508, six}}, given);
+    REQUIRE(set.entries.size() == 1);
+    CHECK(set.entries[0].head.id == id);
+    CHECK(set.entries[0].period == period);
+  };
+  check({low}, 0x708, 30 * ms);
+  check({plain}, 0x508, 20 * ms);
+  check({low, plain}, 0x508, 20 * ms);
+  check({plain, low}, 0x708, 30 * ms);
 }
 
 }  // namespace tool_analyse_seen_set_test

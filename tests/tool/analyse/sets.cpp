@@ -71,6 +71,13 @@ TEST_CASE("rates: of a line of a file the blanks around it and a remark are no p
   CHECK(rates[3].place == file + ":7");
 }
 
+TEST_CASE("rates: the shortest period is a nanosecond", "[shared]") {
+  CHECK(told({"gyro=1ns"}) == "gyro 1ns\n");
+  const auto left = leaving([] { static_cast<void>(read_rates({"gyro=0ns"})); });
+  CHECK(left.code == cli::exit_usage);
+  CHECK_THAT(left.text, Catch::Contains("--rates gyro=0ns: no period '0ns'\n"));
+}
+
 TEST_CASE("rates: of several for a topic the last one counts", "[shared]") {
   const auto set = robot_bus(amiro::catalogue, nullptr,
                              read_rates({"gyro=10ms@high", "gyroscope=20ms@low", "ring=off", "ring=30ms",

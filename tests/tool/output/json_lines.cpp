@@ -97,6 +97,18 @@ TEST_CASE("JSON lines: what each kind of frame looks like", "[output]") {
   CHECK(has(line_of(long_code), R"("data":"0102030405060708","raw_dlc":12})"));
   long_code.direction = log::Direction::received;
   CHECK(has(line_of(long_code), R"("data":"0102030405060708","direction":"received","raw_dlc":12})"));
+  // The odometry's velocity, of which the end of the line is most often the same.
+  auto velocity = entry_of("602#0102030405060708");
+  CHECK(has(line_of(velocity), R"("topic":"odometry")"));
+  CHECK(line_of(velocity).ends_with(R"("data":"0102030405060708"})"
+                                    "\n"));
+  velocity.raw_dlc = 12;
+  CHECK(line_of(velocity).ends_with(R"("data":"0102030405060708","raw_dlc":12})"
+                                    "\n"));
+  velocity.raw_dlc = 0;
+  velocity.direction = log::Direction::sent;
+  CHECK(line_of(velocity).ends_with(R"("data":"0102030405060708","direction":"sent"})"
+                                    "\n"));
   entry.flags = log::flag::fd | log::flag::error_state;
   entry.direction = log::Direction::unknown;
   CHECK(has(line_of(entry), R"("data":"01020304","fd":{"brs":false,"esi":true}})"));

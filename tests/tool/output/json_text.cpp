@@ -1,6 +1,8 @@
 #include "cli/output/json_text.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <random>
@@ -29,13 +31,14 @@ Field field(std::string_view name, unsigned first_bit, unsigned width) {
   return made;
 }
 
-/// A message of eight bytes with these fields, and its lines.
+/// A message of eight bytes, or as many as are given, with these fields.
 class Message {
  public:
   explicit Message(std::vector<Field> fields,
-                   protocol::Address address = {protocol::Address::By::identifier, false, 0x123})
+                   protocol::Address address = {protocol::Address::By::identifier, false, 0x123},
+                   std::uint16_t length = 8)
       : fields_(std::move(fields)) {
-    layout_.length = 8;
+    layout_.length = length;
     layout_.fields = fields_;
     layout_.address = address;
     topic_.name = "Message";
@@ -187,6 +190,39 @@ TEST_CASE("JSON text: names of values that lie together, apart, below zero and b
   CHECK(names(0x00'FE'FF'FF).empty());
 }
 
+TEST_CASE(
+    "JSON text: a CAN FD frame with all of its bytes, and the name of a value that lies in nine of them",
+    "[output]") {
+  static constexpr std::array<protocol::NamedValue, 2> names{{{0, "none"}, {5, "five"}}};
+  std::vector<Field> fields{field("wide", 4, 62)};
+  fields[0].values = names;
+  const Message message{fields, {protocol::Address::By::identifier, false, 0x123}, 12};
+  cli::JsonText text{message.catalogue()};
+  log::Entry entry = entry_of(0x5F);
+  entry.length = 12;
+  entry.flags = log::flag::fd;
+  std::fill(entry.data.begin() + 8, entry.data.end(), std::uint8_t{0});
+  entry.data[8] = 0xA8;  // its two lowest bits are the field's highest
+  entry.data[11] = 0xAB;
+  const std::string head = R"({"time_ns":"0","bus":"can0","id":"123","topic":"Message","frame":"Message",)";
+  const std::string fd = R"(,"fd":{"brs":false,"esi":false}})"
+                         "\n";
+  CHECK(line_of(text, entry) == head +
+                                    R"("fields":{"wide":5},"units":{"wide":""},"names":{"wide":"five"},)"
+                                    R"("data":"5F00000000000000A80000AB")" +
+                                    fd);
+  entry.data[0] = 0;
+  CHECK(line_of(text, entry) == head +
+                                    R"("fields":{"wide":0},"units":{"wide":""},"names":{"wide":"none"},)"
+                                    R"("data":"0000000000000000A80000AB")" +
+                                    fd);
+  entry.data[8] = 0xA9;
+  CHECK(line_of(text, entry) == head +
+                                    R"("fields":{"wide":1152921504606846976},"units":{"wide":""},)"
+                                    R"("data":"0000000000000000A90000AB")" +
+                                    fd);
+}
+
 /// How many bytes there is room for in a run that was empty.
 std::size_t room_of_a_new_run() {
   log::Bytes bytes;
@@ -225,6 +261,41 @@ TEST_CASE("JSON text: a line is written to where there is room for it, however l
       REQUIRE((out.size() <= room || out.view().data() != before));
       REQUIRE(out.view().substr(room - left) == line);
     }
+  }
+}
+
+TEST_CASE("JSON text: there is room for names of values, be some very short and others very long",
+          "[output]") {
+  using protocol::NamedValue;
+  const std::string together_name(3000, 'a'), apart_name(3000, 'b'), bit_name(400, 'c');
+  const std::array<NamedValue, 2> together{{{0, "x"}, {1, together_name}}};
+  const std::array<NamedValue, 2> apart{{{3, "y"}, {250, apart_name}}};
+  std::vector<NamedValue> bits;
+  std::string of_all_bits;
+  for (std::int64_t bit = 0; bit < 8; ++bit) {
+    bits.push_back({bit, bit_name});
+    of_all_bits += (bit == 0 ? "" : "|") + bit_name;
+  }
+  std::vector<Field> fields{field("a", 0, 8), field("b", 8, 8), field("c", 16, 8)};
+  fields[0].values = together;
+  fields[1].values = apart;
+  fields[2].values = bits;
+  fields[2].flags = true;
+  const Message message{fields};
+  cli::JsonText text{message.catalogue()};
+  const log::Entry entry = entry_of(0xFF'FA'01);
+  const std::string line = line_of(text, entry);
+  CHECK_THAT(line, Catch::Contains(R"("names":{"a":")" + together_name + R"(","b":")" + apart_name +
+                                   R"(","c":")" + of_all_bits + R"("},"data":)"));
+  const std::size_t room = room_of_a_new_run();
+  for (std::size_t left = 0; left < line.size() + 64; left += 61) {
+    log::Bytes out;
+    out.zeros(room - left);
+    const char* const before = out.view().data();
+    text.write(out, "can0", entry);
+    CAPTURE(left);
+    REQUIRE((out.size() <= room || out.view().data() != before));
+    REQUIRE((out.view().substr(room - left) == line));
   }
 }
 
@@ -276,7 +347,7 @@ TEST_CASE("JSON text: of J1939's transport protocol a choice shows what complete
   CHECK_THAT(line(all, &topics[0], 10),
              Contains(R"("fields":{"Near":1,"Far":7},"units":{"Near":"","Far":""})"));
   CHECK_THAT(line(all, &topics[0], 9), Contains(R"("fields":{"Near":1},"units":{"Near":""})"));
-  CHECK_THAT(line(all, &topics[1], 10), Contains(R"("topic":"Other")"));
+  CHECK_THAT(line(all, &topics[1], 10), Contains(R"("topic":"Other","fields":{"Near":1,"Far":7})"));
   CHECK_THAT(line(all, nullptr, 10), Contains(R"("error":"unknown identifier")"));
   CHECK_THAT(line(all, nullptr, 0), Contains(R"("transport":"packet","data":"0000000000000000")"));
 }
