@@ -175,7 +175,7 @@ TEST_CASE("errands: it is sent straight only where it is known to stand, and not
   desk.step();
   REQUIRE(desk.line.said.size() == 2);
   CHECK(desk.line.said[1].second == SetPoint{0, 100});
-  desk.line.robots[0].located = true;  // it stands still, and is about to drive
+  desk.line.robots[0].located = true;  // it rests, and is about to drive
   desk.take(Kind::go, "one", {0, 1});
   REQUIRE(desk.line.said.size() == 3);
   CHECK(desk.line.said[2].second == SetPoint{});
