@@ -311,4 +311,72 @@ TEST_CASE("targets: a line of C++ may be full, and is broken where it has one le
   }
 }
 
+TEST_CASE("targets: a comparison of C++ is broken where its second argument does not fit") {
+  for (const std::size_t size : {23U, 24U}) {  // 109 columns and 111
+    const std::string rest(size - 1, 'a');
+    const std::string text =
+        made("cpp", R"({"robot": "r", "namespace": "r", "bus": {"bit_rate": 500000, "source": "s"},
+          "boards": [{"name": "b", "mcu": "m", "source": "s"}], "topics": [{"name": "t)" +
+                        rest + R"(", "id": 16, "board": "b", "source": "s",
+          "frames": [{"dlc": 0, "fields": []}]}]})");
+    const std::string head = "  friend constexpr bool operator==(";
+    const std::string argument = "const T" + rest + "&", tail = argument + ") = default;";
+    CHECK((head + argument + ", " + tail).size() == 63 + 2 * size);
+    check_fits(text, head + argument + ", " + tail,
+               head + argument + ",\n" + std::string(head.size(), ' ') + tail);
+  }
+}
+
+TEST_CASE("targets: a function of C++ is on one line, or its head is, or the head is broken, too") {
+  for (const std::size_t size : {30U, 31U}) {
+    const std::string name(size, 'a');
+    const std::string text =
+        made("cpp", of_topic(R"({"name": ")" + name + R"(", "byte": 0, "type": "u8", "flags": {"up": 0}})"));
+    const std::string head = "  [[nodiscard]] constexpr bool up() const noexcept {";
+    const std::string body = "return (" + name + " & up_flag) != 0;";
+    CHECK((head + " " + body + " }").size() == 80 + size);
+    check_fits(text, head + " " + body + " }", head + "\n    " + body + "\n  }");
+  }
+  for (const std::size_t size : {14U, 15U}) {
+    const std::string rest(size - 1, 'a');
+    const std::string text =
+        made("cpp", R"({"robot": "r", "namespace": "r", "bus": {"bit_rate": 500000, "source": "s"},
+          "boards": [{"name": "b", "mcu": "m", "source": "s"}], "topics": [{"name": "t)" +
+                        rest + R"(", "id": 16, "board": "b", "source": "s",
+          "frames": [{"dlc": 0, "fields": []}]}]})");
+    const std::string head = "  [[nodiscard]] static constexpr T" + rest + " decode(";
+    const std::string argument = "const std::array<ocm::can::Payload, 1>& all) noexcept {";
+    CHECK((head + argument).size() == 96 + size);
+    check_fits(text, head + argument, head + "\n      " + argument);
+  }
+  for (const auto& [type, name] : {std::pair{"16", "aaa"}, std::pair{"8", "aaaa"}}) {
+    const std::string text = made("cpp", std::string{R"({"robot": "r", "messages": [{"name": "M", "id": 1,
+      "fields": [{"name": ")"} + name + R"(", "byte": 0, "type": "u)" +
+                                             type + R"("}]}]})");
+    const std::string head =
+        std::string{"  constexpr void set_"} + name + "(std::uint" + type + "_t value_) noexcept {";
+    const std::string body = std::string{"ocm::protocol::write_field(bytes, "} + name + "_at, value_);";
+    check_fits(text, head + " " + body + " }", head + "\n    " + body + "\n  }");
+  }
+}
+
+TEST_CASE("targets: a named number of C++ is one that a compiler takes, whatever its size") {
+  const std::string signed_values = R"({"least": -9223372036854775808, "near_least": -9223372036854775807,
+    "below": -2147483649, "low": -2147483648, "near_low": -2147483647, "minus_one": -1, "zero": 0,
+    "most": 9223372036854775807})";
+  const std::string field = R"({"name": "x", "byte": 0, "type": "i64", "values": )" + signed_values + "}";
+  for (const std::string& text :
+       {made("cpp", of_topic(field)),
+        made("cpp", R"({"robot": "r", "messages": [{"name": "M", "id": 1, "fields": [)" + field + "]}]}")})
+    CHECK(has(text,
+              " {\n    least = INT64_MIN,\n    near_least = -9'223'372'036'854'775'807,\n"
+              "    below = -2'147'483'649,\n    low = INT32_MIN,\n    near_low = -2'147'483'647,\n"
+              "    minus_one = -1,\n    zero = 0,\n    most = 9'223'372'036'854'775'807,\n  };\n"));
+  CHECK(has(made("cpp", R"({"robot": "r", "messages": [{"name": "M", "id": 1, "fields": [
+        {"name": "x", "byte": 0, "type": "u64", "values": {"zero": 0, "half": 9223372036854775807,
+         "upper": 9223372036854775808, "all": 18446744073709551615}}]}]})"),
+            " {\n    zero = 0,\n    half = 9'223'372'036'854'775'807,\n"
+            "    upper = 9'223'372'036'854'775'808U,\n    all = 18'446'744'073'709'551'615U,\n  };\n"));
+}
+
 }  // namespace generator_targets_test

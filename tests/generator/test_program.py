@@ -5,6 +5,9 @@ Usage: test_program.py OCM_GENERATE
 import json
 import os
 import pathlib
+import resource
+import signal
+import socket
 import stat
 import subprocess
 import sys
@@ -144,6 +147,27 @@ class Program(unittest.TestCase):
         done = run(self.spec, "-o", "/dev/full")
         self.assertEqual(done.returncode, 1)
         self.assertIn("No space left", done.stderr)
+
+    def test_a_header_for_which_there_is_too_little_room(self):
+        """The old one stays as it is, and nothing lies beside it."""
+        def little():
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+            resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000))
+        for old in (None, "the old header"):
+            if old is not None:
+                self.header.write_text(old)
+            done = run("good.json", "-o", "pair.hpp", cwd=self.folder, preexec_fn=little)
+            self.assertEqual((done.returncode, done.stdout), (1, ""))
+            self.assertEqual(done.stderr, "pair.hpp: it cannot be written: File too large; the old one, if there was one, is as it was\n")
+            self.assertEqual(sorted(os.listdir(self.folder)), ["good.json"] if old is None else ["good.json", "pair.hpp"])
+        self.assertEqual(self.header.read_text(), "the old header")
+
+    def test_what_is_no_file_and_cannot_be_opened(self):
+        with socket.socket(socket.AF_UNIX) as end:
+            end.bind(str(self.folder / "socket"))
+            done = run("good.json", "-o", "socket", cwd=self.folder)
+        self.assertEqual((done.returncode, done.stdout), (1, ""))
+        self.assertEqual(done.stderr, "socket: No such device or address; a file that you may write\n")
 
     def test_task_sets(self):
         sets = self.folder / "tasks.json"
@@ -338,6 +362,42 @@ class Program(unittest.TestCase):
                 self.assertNotIn("Starts at", done.stdout, field)
             else:
                 self.assertIn(f"| Starts at {said}. |\n", done.stdout, field)
+
+    def test_a_range_of_which_an_end_is_no_decimal_number(self):
+        """Of 19 digits and more there is none: a page then states no range, a JSON schema the other end."""
+        for kind, more, shown, ends in (("u62", {}, "0 to 4611686018427387903", [0, 4611686018427387903]), ("u62", {"scale": 3}, "", [0, None]),
+                                        ("i63", {"offset": -5000000000000000000}, "", [None, -388313981572612097]),
+                                        ("i63", {"offset": 5000000000000000000}, "", [388313981572612096, None]), ("i63", {"scale": 3}, "", [None, None]),
+                                        ("i64", {}, "-9223372036854775808 to 9223372036854775807", [None, None]), ("i64", {"scale": -1}, "", [None, None]),
+                                        ("u64", {}, "", [None, None])):
+            field = {"name": "f", "byte": 0, "type": kind, **more}
+            self.spec.write_text(json.dumps({"robot": "x", "messages": [{"name": "M", "id": 1, "fields": [field]}]}))
+            done = run(self.spec, "--to", "markdown", "-o", "-")
+            self.assertEqual((done.returncode, done.stderr), (0, ""), field)
+            row = next(line for line in done.stdout.splitlines() if line.startswith("| f |"))
+            self.assertEqual(row.split(" | ")[2], kind)
+            self.assertTrue(row.endswith(f" | {shown} |  |"), row)
+            done = run(self.spec, "--to", "json-schema", "-o", "-")
+            self.assertEqual((done.returncode, done.stderr), (0, ""), field)
+            rule = json.loads(done.stdout)["oneOf"][0]["properties"]["fields"]["properties"]["f"]
+            self.assertEqual([rule.get("minimum"), rule.get("maximum")], ends, field)
+
+    def test_a_number_of_c_has_the_digits_and_the_suffix_of_its_size(self):
+        def made(*fields):
+            self.spec.write_text(json.dumps({"robot": "x", "messages": [{"name": "M", "id": 1, "fields": fields}]}))
+            done = run(self.spec, "--to", "c", "-o", "-")
+            self.assertEqual((done.returncode, done.stderr), (0, ""), fields)
+            return done.stdout
+        for number, shown in ((0, "0"), (-1, "(-1)"), (2**31 - 1, "2147483647"), (2**31, "2147483648u"), (2**32 - 1, "4294967295u"),
+                              (2**32, "INT64_C(4294967296)"), (2**63 - 1, "INT64_C(9223372036854775807)"), (-2**31 + 1, "(-2147483647)"),
+                              (-2**31, "(INT32_MIN)"), (-2**31 - 1, "(INT64_C(-2147483649))"), (-2**63 + 1, "(INT64_C(-9223372036854775807))"),
+                              (-2**63, "(INT64_MIN)")):
+            self.assertIn(f"\n#define X_M_F_V {shown}\n", made({"name": "f", "byte": 0, "type": "i64", "values": {"v": number}}))
+        for kind, number, shown in (("u8", 0, "0x00u"), ("u8", 255, "0xFFu"), ("u16", 255, "0xFFu"), ("u16", 256, "0x0100u"), ("u16", 65535, "0xFFFFu"),
+                                    ("u32", 65535, "0xFFFFu"), ("u32", 65536, "0x00010000u"), ("u32", 2**32 - 1, "0xFFFFFFFFu"),
+                                    ("u40", 255, "UINT64_C(0xFF)"), ("u40", 2**32 - 1, "UINT64_C(0xFFFFFFFF)"), ("u40", 2**32, "UINT64_C(0x0000000100000000)")):
+            header = made({"name": "s", "byte": 0, "type": kind}, {"name": "f", "byte": 6, "type": "u8", "selector": "s", "selected": [number]})
+            self.assertIn(f"\n  return bits == {shown};\n", header, kind)
 
     def test_a_number_has_the_narrowest_type_that_holds_it(self):
         robot = {"robot": "x", "namespace": "x", "bus": {"bit_rate": 500000, "source": "s"}, "boards": [{"name": "b", "mcu": "m", "source": "s"}]}

@@ -110,7 +110,10 @@ TEST_CASE("text: a scale and an offset as whole numbers") {
         Row{{1, -18}, {}, "n / 1'000'000'000'000'000'000.0", "n * 1'000'000'000'000'000'000.0"},
         Row{{1, -19}, {}, "n / 1e19", "n * 1e19"},
         Row{{3, -9}, {}, "n * 3.0 / 1'000'000'000.0", "n * 1'000'000'000.0 / 3.0"},
-        Row{{3, -10}, {}, "n * 3.0 / 1e10", "n * 1e10 / 3.0"}}) {
+        Row{{3, -10}, {}, "n * 3.0 / 1e10", "n * 1e10 / 3.0"},
+        Row{{}, {}, "n * 0.0", "n / 0.0"},  // every number means the offset
+        Row{{}, {5, 0}, "n * 0.0 + 5.0", "(n - 5.0) / 0.0"},
+        Row{{}, {25, -1}, "(n * 0.0 + 25.0) / 10.0", "(n * 10.0 - 25.0) / 0.0"}}) {
     const auto conversion = generate::conversion(field_of(row.scale, row.offset));
     CHECK(generate::to_physical(conversion, "n") == row.physical);
     CHECK(generate::to_raw(conversion, "n") == row.raw);

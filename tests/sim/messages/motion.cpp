@@ -173,6 +173,13 @@ TEST_CASE("A bit is both, names are what they name, flags are those that have na
   const auto numbers = different(seen_of(wide));  // an eighth to both sides of 100
   CHECK((numbers.front() >= 37 && numbers.front() < 45 && numbers.back() <= 163 && numbers.back() > 155));
   CHECK(numbers.size() > 100);
+  // Few: less than half of those that may come.
+  const std::vector<protocol::NamedValue> two{{0, "a"}, {2, "b"}};
+  wide.values = two;
+  wide.raw_max = 5;
+  CHECK(different(seen_of(wide)) == std::vector<std::int64_t>{0, 2});
+  wide.raw_max = 6;
+  CHECK(different(seen_of(wide)) == std::vector<std::int64_t>{0, 1, 2, 3, 4, 5, 6});
   protocol::Field flags = field_of(8, false, 0);
   flags.flags = true;
   const std::vector<protocol::NamedValue> bits{{0, "low"}, {7, "high"}, {8, "beyond"}, {-1, "none"}};
@@ -184,6 +191,10 @@ TEST_CASE("A bit is both, names are what they name, flags are those that have na
     CAPTURE(set);
     CHECK(count / static_cast<double>(sets.size()) == Approx(0.25).margin(0.06));
   }
+  flags.raw_max = 128;  // what is not within a stated range is the least of it
+  CHECK(different(seen_of(flags)) == std::vector<std::int64_t>{0, 1, 128});
+  flags.raw_min = 2;
+  CHECK(different(seen_of(flags)) == std::vector<std::int64_t>{2, 128});
 }
 
 TEST_CASE("A name or a bit stays for 5 to 20 s, a number takes a new way every 2 to 8 s, without a corner") {
@@ -238,6 +249,16 @@ TEST_CASE("A name or a bit stays for 5 to 20 s, a number takes a new way every 2
   CHECK(most > 6);
 }
 
+TEST_CASE("Before the beginning a field is as it is there") {
+  protocol::Field field = field_of(32, false, 0);
+  field.raw_max = 1'000'000'000;
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const sim::FieldMotion motion{field, seed, 1};
+    for (const std::int64_t ns : {std::int64_t{-1}, std::int64_t{-5'000'000'000}, INT64_MIN})
+      CHECK(motion.at(base::Time{std::chrono::nanoseconds{ns}}) == motion.at(base::Time{}));
+  }
+}
+
 TEST_CASE("A float takes the way of a number with the same range, seed and place") {
   protocol::Field whole = field_of(32, false, 0);
   whole.raw_max = 1'000'000'000;
@@ -288,6 +309,10 @@ TEST_CASE("A float without a range moves within 100 above its start, or above 0"
     between(-2.5, 1);
     field.min = {}, field.max = {3, 0};
     between(0, 3);
+    field.min = {3, 0};
+    CHECK(range() == std::pair{3.0, 3.0});
+    field.min = {4, 0};  // which ends below its beginning: none
+    between(0, 100);
   }
 }
 

@@ -73,6 +73,23 @@ TEST_CASE("One seed plays the same, two seeds do not") {
   CHECK(frames(1) != frames(2));
 }
 
+TEST_CASE("What is due is sent, and nothing before it is") {
+  sim::MessagePlayer player{bus().catalogue(), {.seed = 3}};
+  for (int i = 0; i < 200; ++i) {
+    const base::Time next = player.next_event();
+    int sent = 0;
+    const auto count = [&](const auto&, const can::AnyFrame&, base::Time due) {
+      CHECK(due == next);
+      ++sent;
+    };
+    player.advance(next - 1ns, count);
+    CHECK(sent == 0);
+    player.advance(next, count);
+    CHECK(sent > 0);
+    CHECK(player.next_event() > next);
+  }
+}
+
 TEST_CASE("Values stay within their ranges, move, and every page is there") {
   std::map<std::string, std::set<std::int64_t>> seen;
   for (const auto& each : played({.seed = 5}))

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <random>
 #include <string>
+#include <vector>
 
 #include <catch2/catch.hpp>
 
@@ -132,6 +133,8 @@ TEST_CASE("a world holds so much, and no more") {
   CHECK(good(with(R"("walls":[)" + long_wall + "," + wall(0) + "],")).walls.size() == 1000);
   CHECK(only(with(R"("walls":[)" + long_wall + "," + wall(0) + "," + wall(0) + "," + wall(0) + "],")) ==
         "more than 1000 pieces of wall; fewer of them");
+  CHECK(only(with(R"("walls":[)" + list(1001, corner) + "],")) ==
+        "a list of 1001; two or more corners, [[x, y], [x, y]]");
   const auto anomaly = [](std::size_t) { return std::string{R"({"at":[0,0],"radius":1,"gauss":[0,0]})"}; };
   const std::string of_anomalies = R"("walls":[],"anomalies":)";
   CHECK(good(with(of_anomalies + list(100, anomaly) + ",")).anomalies.size() == 100);
@@ -157,6 +160,24 @@ TEST_CASE("a world holds so much, and no more") {
   CHECK(text.size() == 1'000'000);
   static_cast<void>(good(text));
   CHECK(only(text + ' ') == "the file has 1000001 bytes; a world has at most 1000000");
+}
+
+TEST_CASE("a robot may touch a wall and another robot, and is no nearer to them") {
+  // The middle of a robot is 1 cm behind the place at which it starts.
+  const auto problems_of = [](const std::string& wall_y, const std::string& second_y) {
+    return printed(ocm::sim::worlds::parse(R"({"name":"w","walls":[[[-0.01,)" + wall_y + "],[1," + wall_y +
+                                               R"(]]],"robots":[{"name":"A","model":"avr","at":[0,0]},)" +
+                                               R"({"name":"B","model":"avr","at":[0,)" + second_y + "]}]}",
+                                           "f")
+                       .problems);
+  };
+  CHECK(problems_of("-0.1", "0.2").empty());
+  CHECK(problems_of("-0.099", "0.2") ==
+        std::vector<std::string>{"f:1: /robots/0/at: robot \"A\" is inside a wall: it has a radius of 0.1 m, "
+                                 "and the wall is 0.099 m from its middle; a place with more room"});
+  CHECK(problems_of("-0.1", "0.199") ==
+        std::vector<std::string>{"f:1: /robots/1/at: robot \"B\" overlaps robot \"A\"; at least 0.2 m from "
+                                 "middle to middle"});
 }
 
 TEST_CASE("what a world does not say is as documented") {
