@@ -167,6 +167,10 @@ TEST_CASE("a spec may be as deep and as large as is said, and names and units as
                                  "the accessor, such as \"gauss\""});
   CHECK(with(unit, unit + ", \"unit_name\": \"" + longest + '"').empty());
   CHECK(with(unit, unit + ", \"unit_name\": \"" + longest + "a\"").size() == 1);
+  const std::string line(1000, 'a');
+  CHECK(with("\"Pair\"", '"' + line + '"').empty());
+  CHECK(with("\"Pair\"", '"' + line + "a\"") ==
+        std::vector<std::string>{"f:2: /robot: a text of 1001 bytes; at most 1000"});
 }
 
 /// good.json with another text in the place of one that is in it once.
@@ -245,6 +249,22 @@ TEST_CASE("a topic has 255 frames, and no more, their counts included") {
   CHECK(problems(254).empty());
   CHECK(problems(255) ==
         std::vector<std::string>{"f:3: /topics/0/frames: 256 frames with their counts; at most 255"});
+  // Without counts.
+  const auto of_frames = [](int count) {
+    std::string frames;
+    for (int i = 0; i < count; ++i)
+      frames += std::string{i == 0 ? "" : ", "} + R"({"name": "f)" + std::to_string(i) + R"(", "id": )" +
+                std::to_string(i) + R"(, "dlc": 0, "fields": []})";
+    return printed(
+        ocm::spec::parse(R"({"robot": "r", "namespace": "r", "bus": {"bit_rate": 500000, "source": "s"},
+      "boards": [{"name": "b", "mcu": "m", "source": "s"}],
+      "topics": [{"name": "t", "id": 0, "board": "b", "source": "s", "frames": [)" +
+                             frames + "]}]}",
+                         "f")
+            .problems);
+  };
+  CHECK(of_frames(255).empty());
+  CHECK(of_frames(256) == std::vector<std::string>{"f:3: /topics/0/frames: 256 frames; at most 255"});
 }
 
 TEST_CASE("what is derived wrongly takes no name from what is derived well") {
@@ -411,6 +431,70 @@ TEST_CASE("an unknown member of any part of a spec is named, with those that the
     CHECK(problems(bad) ==
           std::vector<std::string>{where + R"(/zzz: unknown member "zzz"; one of )" + known});
   }
+}
+
+TEST_CASE("a topic of an unknown board has that problem alone") {
+  const auto topic = [](const std::string& name, const std::string& id, const std::string& board) {
+    return R"({"name": ")" + name + R"(", "role": "refusal", "id": )" + id + R"(, "board": ")" + board +
+           R"(", "source": "s", "frames": [{"fields": [{"name": "topic", "byte": 0, "type": "u8"}, )" +
+           R"({"name": "reason", "byte": 1, "type": "u8"}, {"name": "refused", "byte": 2, "type": "u16"}]}]})";
+  };
+  const auto problems = [&topic](const std::string& first, const std::string& second) {
+    return printed(
+        ocm::spec::parse(R"({"robot": "r", "namespace": "r", "bus": {"bit_rate": 500000, "source": "s"},
+      "boards": [{"name": "left", "mcu": "m", "source": "s"}, {"name": "right", "mcu": "m", "source": "s"}],
+      "topics": [)" + topic("a", "1", first) +
+                             ", " + topic("b", "2", second) + "]}",
+                         "f")
+            .problems);
+  };
+  using Lines = std::vector<std::string>;
+  CHECK(problems("left", "right").empty());
+  CHECK(problems("right", "right") ==
+        Lines{R"(f:3: /topics/1/role: a second topic of its board has the role "refusal" )"
+              "(see /topics/0/role); at most one of a board"});
+  CHECK(problems("right", "rihgt") ==
+        Lines{R"(f:3: /topics/1/board: unknown board "rihgt"; did you mean "right"?)"});
+  CHECK(problems("rihgt", "right") ==
+        Lines{R"(f:3: /topics/0/board: unknown board "rihgt"; did you mean "right"?)"});
+}
+
+TEST_CASE("what only the schema sees is reported with its place, and with what the schema says of it") {
+  const auto loaded =
+      ocm::spec::parse(good_with(R"("robot": "Pair",)", R"("$schema": 7, "robot": "Pair",)"), "f");
+  CHECK(loaded.spec == nullptr);
+  REQUIRE(loaded.problems.size() == 1);
+  CHECK(loaded.problems[0].place == "f:2: /$schema");
+  CHECK(loaded.problems[0].remedy == "see topics.schema.json");
+
+  // And by itself, behind what a reader has told.
+  using Problems = std::vector<ocm::spec::Problem>;
+  Problems syntax;
+  const auto root = ocm::spec::parse_json(
+      good_with(R"("name": "mode", "byte": 2)", R"("name": "mode", "byte": 9)"), "f", syntax);
+  REQUIRE(syntax.empty());
+  const auto after = [&root](Problems problems) {
+    const std::size_t before = problems.size();
+    ocm::spec::validate_by_schema(root, "f", problems);
+    REQUIRE(problems.size() >= before);
+    return Problems(problems.begin() + static_cast<std::ptrdiff_t>(before), problems.end());
+  };
+  const std::string place = "f:17: /topics/0/frames/0/fields/1/byte";
+  for (const char* told :
+       {"f:17: /topics/0/frames/0/fields/1", "f:17: /topics/0/frames/0/fields/1/byte_order",
+        "f:17: /topics/0/frames/0/fields/10/byte", "f:17:3"}) {
+    CAPTURE(told);
+    const Problems found = after({{told, "something", "another"}});
+    REQUIRE(found.size() == 1);
+    CHECK(found[0].place == place);
+    CHECK(found[0].remedy ==
+          "The byte where it begins, 0 to 7, from its lowest bit (little-endian) or its highest (big-endian) "
+          "on");
+  }
+  CHECK(after({}).size() == 1);
+  // Nothing where a reader has told already, of the value or within it.
+  CHECK(after({{place, "something", "another"}}).empty());
+  CHECK(after({{place + "/x", "something", "another"}}).empty());
 }
 
 TEST_CASE("a file that is not there, or is no file") {

@@ -256,6 +256,9 @@ TEST_CASE("dbc: what would make frames mean something else is a problem") {
   CHECK(problems("SG_ S : 0|8@1+ (1,0) [0|0] \"\" X\n")
             .at(0)
             .rfind("1: SG_: a signal before the first message", 0) == 0);
+  CHECK(problems("\n\nSG_ S : 0|8@1+ (1,0) [0|0] \"\" X\n")
+            .at(0)
+            .rfind("3: SG_: a signal before the first message", 0) == 0);
   const std::string message = "BO_ 1 A: 8 X\n SG_ S ";
   for (const char* bad : {": 14280|8@1+ (1,0)", ": 0|65@1+ (1,0)", ": 0|8@2+ (1,0)", ": 0|8@1 (1,0)",
                           ": 0|8@1+ (1)", "n3 : 0|8@1+ (1,0)", "m : 0|8@1+ (1,0)", ": 0|8@1+ (one,0)"}) {
@@ -268,6 +271,15 @@ TEST_CASE("dbc: what would make frames mean something else is a problem") {
         Lines{"2: SG_: the file ends here, where the greatest value is expected; SG_ NAME : "
               "START|WIDTH@ORDER+ (SCALE,OFFSET) [MIN|MAX] \"UNIT\" RECEIVER"});
   CHECK(problems(message + ": 0|8@1+ (1,0) [0|0] \"\" X\nVAL_ 1 S 0").size() == 1);
+}
+
+TEST_CASE("dbc: a text ends where it says, also behind a backslash and in front of a quote") {
+  const std::string_view longer = "BO_ 1 A: 8 X\nCM_ \"say \\\"so\\\"\";\n";
+  const auto reading = dbc::read(longer.substr(0, longer.find('\\') + 1));
+  CHECK_FALSE(reading.document.has_value());
+  CHECK(printed(reading.problems) ==
+        std::vector<std::string>{"2: CM_: a string is not closed, where a string is expected; CM_ [BO_ "
+                                 "IDENTIFIER | SG_ IDENTIFIER SIGNAL | BU_ NODE] \"TEXT\";"});
 }
 
 TEST_CASE("dbc: the same identifier, and the same name, twice") {
@@ -390,6 +402,21 @@ TEST_CASE("dbc: a row of selectors has an end, and ranges may be many") {
           {"4: T and U of A have bits in common; each is read by itself"});
 }
 
+TEST_CASE("dbc: a range of a selector may be there many times") {
+  const auto pages = [](const char* signal, const std::string& range) {
+    std::string of = std::string{"SG_MUL_VAL_ 1 "} + signal + " Page ";
+    for (int i = 0; i < 100; ++i) of.append(i == 0 ? "" : ", ").append(range);
+    return of + ";\n";
+  };
+  const std::string text =
+      "BO_ 1 A: 8 X\n SG_ Page M : 0|32@1+ (1,0) [0|0] \"\" X\n SG_ T m0 : 40|8@1+ (1,0) [0|0] \"\" X\n"
+      " SG_ U m2 : 40|8@1+ (1,0) [0|0] \"\" X\n";
+  const std::string greatest = "18446744073709551615-18446744073709551615";
+  message(text + pages("T", greatest) + pages("U", "1-1"));
+  message(text + pages("T", greatest) + pages("U", greatest),
+          {"4: T and U of A have bits in common; each is read by itself"});
+}
+
 TEST_CASE("dbc: several selectors, one below another") {
   const std::string text =
       "BO_ 1 A: 8 X\n SG_ S0 M : 0|4@1- (1,0) [0|0] \"\" X\n SG_ S1 m0M : 4|4@1- (1,0) [0|0] \"\" X\n SG_ S2 "
@@ -459,6 +486,22 @@ TEST_CASE("dbc: attributes and their defaults") {
   CHECK(a.signals[0].start_value == "637.5");
   CHECK(a.attributes == std::vector<dbc::Attribute>{{"Owner", "me"}});
   CHECK(file.attributes == std::vector<dbc::Attribute>{{"DBName", "car"}});
+}
+
+TEST_CASE("dbc: a time of a message is above zero, or there is none") {
+  const auto stated = [](const std::string& value) {
+    const Message of = message("BO_ 1 A: 8 X\nBA_ \"GenMsgCycleTime\" BO_ 1 " + value +
+                               ";\nBA_ \"GenMsgDelayTime\" BO_ 1 " + value + ";\n");
+    CHECK(of.attributes.empty());
+    CHECK(of.cycle_ms == of.delay_ms);
+    return of.cycle_ms;
+  };
+  CHECK(stated("0.5") == base::Decimal{5, -1});
+  CHECK(stated("1") == base::Decimal{1, 0});
+  for (const char* none : {"0", "0.0", "-5", "\"\"", "\"often\""}) {
+    CAPTURE(none);
+    CHECK_FALSE(stated(none).has_value());
+  }
 }
 
 TEST_CASE("dbc: a number of an enumeration is one of its names, and a number where there are no more") {

@@ -519,6 +519,24 @@ TEST_CASE("messages: a DBC file is known by what it begins with, and JSON whatev
   CHECK(parse("\n VERSION \"\"\nBO_ 1 A: 8 X\n", {}, "car").messages.size() == 1);
 }
 
+TEST_CASE("messages: each word that a DBC file begins with, whatever ends the word") {
+  for (const char* begin : {"VERSION \"\"", "VERSION\"\"", "NS_ :", "NS_:", "BS_:", "BS_\t:", "BU_: X",
+                            "BU_\n: X", "BU_\r\n:", "CM_ \"a car\";", "VAL_TABLE_ T 0 \"a\" ;"}) {
+    CAPTURE(begin);
+    CHECK(parse(std::string{begin} + "\nBO_ 1 A: 8 X\n", {}, "car").messages.size() == 1);
+  }
+  for (const char* begin : {"BU", "BU_X: Y", "bu_: X", "FOO_ 1;"}) {
+    CAPTURE(begin);
+    const auto problems = spec::parse(std::string{begin} + "\nBO_ 1 A: 8 X\n", "car").problems;
+    REQUIRE(problems.size() == 1);
+    CHECK(problems[0].remedy == "strict JSON: double quotes, commas between members, no comments");
+  }
+  // What is called so is one, in whatever letters.
+  const std::string odd = "FOO_ 1;\nBO_ 1 A: 8 X\n";
+  CHECK(parse(odd, {"car.DBC:1: unknown statement 'FOO_'; left out"}, "car.DBC").messages.size() == 1);
+  CHECK(parse(odd, {"car.dbc:1: unknown statement 'FOO_'; left out"}, "car.dbc").messages.size() == 1);
+}
+
 TEST_CASE("messages: a word of DBC that ends the text begins no DBC file") {
   const std::string_view text = "BO_ 1 A: 8 X\n";
   const auto told = [&](std::size_t size) { return spec::parse(text.substr(0, size), "car").problems; };
@@ -645,6 +663,31 @@ TEST_CASE("messages: C++ has no name for a value that the bits of its field cann
   CHECK(has("Least"));
   CHECK_FALSE(has("Beyond"));
   CHECK_FALSE(has("Below"));
+}
+
+TEST_CASE("messages: of a DBC file those are kept that one frame carries, of J1939 several") {
+  const auto of_length = [](const std::string& id, const std::string& length,
+                            const std::vector<std::string>& doubts = {}) {
+    return parse("BO_ 1 Other: 8 X\nBO_ " + id + " A: " + length +
+                     " X\nBA_DEF_ BO_ \"VFrameFormat\" ENUM \"StandardCAN\",\"ExtendedCAN\",\"J1939PG\";\n"
+                     "BA_ \"VFrameFormat\" BO_ 2566844672 2;\n",
+                 doubts, "f.dbc");
+  };
+  const std::string no_group =
+      "f.dbc:4: the attribute VFrameFormat is of a message 2566844672, which is not in the file; left out";
+  const Model longest = of_length("2", "64", {no_group});
+  REQUIRE(longest.messages.size() == 2);
+  CHECK(longest.messages[1].length == 64);
+  CHECK(longest.too_long.empty());
+  const Model longer =
+      of_length("2", "65", {no_group, "f.dbc:2: A has 65 bytes; it is left out: a frame has at most 64"});
+  CHECK(longer.messages.size() == 1);
+  CHECK(longer.too_long == std::vector<std::string>{"A"});
+  const Model group = of_length("2566844672", "1785");
+  REQUIRE(group.messages.size() == 2);
+  CHECK(group.messages[1].is_j1939());
+  CHECK(group.messages[1].length == 1785);
+  CHECK(group.too_long.empty());
 }
 
 TEST_CASE("messages: more nodes than a catalogue has place for") {

@@ -301,6 +301,25 @@ TEST_CASE("an unknown member of any part of the sentences is named, with those t
   }
 }
 
+TEST_CASE("a sentence has sixteen integers, and no more") {
+  const Spec spec{"sentences"};
+  const auto with = [&spec](int count) {
+    Json fields = Json::array();
+    for (int i = 0; i < count; ++i)
+      fields.push_back({{"name", "f" + std::to_string(i)}, {"unit", ""}, {"description", "one of many"}});
+    return told(spec.with("/sentences/1/fields", fields));
+  };
+  CHECK(with(16).empty());
+  CHECK(with(17) == std::vector<std::string>{"/sentences/1/fields: 17 integers; at most 16"});
+}
+
+TEST_CASE("what only the schema of the sentences sees is reported with its place, and where to look") {
+  const auto lines = told(Spec{"sentences"}.with("/$schema", 7));
+  REQUIRE(lines.size() == 1);
+  CHECK(lines[0].starts_with("/$schema: "));
+  CHECK(lines[0].ends_with("; see sentences.schema.json"));
+}
+
 TEST_CASE("the least and the greatest integer of sentences may be one, and not the other way round") {
   const Spec spec{"sentences"};
   const auto is_told = [&](int min, int max) {
