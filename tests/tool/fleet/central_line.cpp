@@ -6,7 +6,10 @@
 #include <chrono>
 #include <csignal>
 #include <cstddef>
+#include <cstdlib>
+#include <fcntl.h>
 #include <filesystem>
+#include <fstream>
 #include <string>
 #include <unistd.h>
 #include <utility>
@@ -14,6 +17,8 @@
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
+
+#include "ocm/host/descriptor.hpp"
 
 #include "cli/fleet/keeper.hpp"
 #include "cli/fleet/pause_seen.hpp"
@@ -278,6 +283,31 @@ TEST_CASE("central line: a verb that needs it for itself, or is to record it, sa
                                  "          record there: central --own --record FILE, or map --record "
                                  "FILE\n",
                                  ::getpid()));
+}
+
+TEST_CASE("central line: where no other program could join it is said, and the line is had all the same") {
+  const TemporaryDirectory folder;
+  const Environment runtime{"XDG_RUNTIME_DIR", folder.path().c_str()};
+  const Handlers handlers;
+  const std::string directory = folder.file("ocm");
+  std::ofstream{directory} << "no directory\n";
+  host::Descriptor dongle{::posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC)};
+  REQUIRE(dongle);
+  REQUIRE(::grantpt(dongle.get()) == 0);
+  REQUIRE(::unlockpt(dongle.get()) == 0);
+  LineOptions options;
+  options.path = ::ptsname(dongle.get());
+  options.dongle.kind = "ours";
+  bool is_own = false;
+  const auto left = leaving([&] {
+    CentralLine line{"robots", options};
+    is_own = line.own() != nullptr && line.joined() == nullptr;
+    dongle.reset();  // or its last answer is waited for
+  });
+  CHECK(is_own);
+  CHECK_FALSE(left.code);
+  CHECK_THAT(left.text, Catch::StartsWith(fmt::format(
+                            "robots: no other program can join: '{}' is not a directory\n", directory)));
 }
 
 TEST_CASE("central line: only who is linked, speaks and has not said its handshake is asked for it, once") {

@@ -113,6 +113,30 @@ TEST_CASE("map view: a file that cannot be written is said, and a failure; the o
   CHECK(bench.out.ends_with(" s, drawn 1 time\n"));
 }
 
+TEST_CASE(
+    "map view: a picture is what gnuplot draws of the other's words; where it cannot, that is a failure") {
+  Bench bench;
+  const TemporaryDirectory programs;
+  const Environment path{"PATH", programs.path().c_str()};
+  bench.views({"a.svg", "b.svg"}, {"plot x\n"});
+  CHECK(bench.code == cli::exit_failure);
+  CHECK_FALSE(std::filesystem::exists(bench.file("a.svg")));
+  CHECK_THAT(bench.err,
+             Catch::Contains("\nmap: " + bench.file("a.svg") +
+                             ": gnuplot is missing, which draws the pictures; install it: sudo apt "
+                             "install gnuplot-nox\n"));
+  CHECK(bench.out.ends_with(" s, drawn 0 times\n"));
+  // Played: it draws the first line that it is given.
+  const std::string gnuplot = programs.file("gnuplot");
+  std::ofstream{gnuplot} << "#!/bin/sh\nread -r line\necho \"<$line>\"\n";
+  std::filesystem::permissions(gnuplot, std::filesystem::perms::owner_all);
+  bench.views({"none/a.svg", "b.svg", "c.svg"}, {"plot x\n", "plot y\n"});
+  CHECK(bench.code == cli::exit_failure);
+  CHECK_THAT(bench.err, Catch::Contains("\nmap: " + bench.file("none/a.svg") + ": "));
+  CHECK(bench.content("b.svg") == "<plot y>\n");
+  CHECK(bench.out.ends_with(" s, drawn 1 time\n"));
+}
+
 TEST_CASE("map view: a program that draws no map is left at once") {
   const PlayedOwner owner{{"ok\nrobots", "ok\nidle\n", "no\nrobots draws no map\nend it, and start a map"}};
   MapOptions options;

@@ -9,8 +9,10 @@
 #include <regex>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <unistd.h>
 #include <utility>
+#include <vector>
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
@@ -315,14 +317,14 @@ TEST_CASE("owner: who joined is at work for two seconds behind its last word") {
   CHECK(bench.owner->at_work(bench.now + 2s + 1ns).empty());
 }
 
-TEST_CASE("owner: robots that find no room in an answer come in the next one") {
-  Bench bench;
+/// As many robots as a program has room for, of names so long, each of which has said where it is, and is
+/// sent.
+void fill(Bench& bench, const std::vector<std::size_t>& letters) {
   auto& server = bench.server;
   constexpr unsigned most = cognitive::Fleet::most_robots;
-  const std::string name(50, 'N');
   std::string list = fmt::format("found {}\n", most);
   for (unsigned index = 0; index < most; ++index)
-    list += fmt::format("{}:C000000000{:02X}:{}\n", index, index, name);
+    list += fmt::format("{}:C000000000{:02X}:{}\n", index, index, std::string(letters.at(index), 'N'));
   CHECK(server.client().scan(0s));
   server.expire(bench.now);
   server.feed("found 0\n" + list + "end of list\n", bench.now);
@@ -334,6 +336,13 @@ TEST_CASE("owner: robots that find no room in an answer come in the next one") {
                         bench.now);
     CHECK_FALSE(bench.owner->go(index, {90, 50}, bench.now));
   }
+}
+
+TEST_CASE("owner: robots that find no room in an answer come in the next one") {
+  Bench bench;
+  constexpr unsigned most = cognitive::Fleet::most_robots;
+  const std::string name(50, 'N');
+  fill(bench, std::vector<std::size_t>(most, name.size()));
   unsigned next = 0;
   int answers = 0;
   for (bool more = true; more && answers < 5; ++answers) {
@@ -359,6 +368,36 @@ TEST_CASE("owner: robots that find no room in an answer come in the next one") {
   }
   CHECK(next == most);
   CHECK(answers == 2);
+}
+
+TEST_CASE("owner: an answer has rows up to 2000 bytes below the longest message, and that one is full") {
+  constexpr std::size_t room = cli::longest_local_message - 2'000;
+  std::vector<std::size_t> letters(cognitive::Fleet::most_robots, 45);
+  unsigned rows = 0;  // that find room
+  std::size_t left = room;
+  {
+    Bench bench;
+    fill(bench, letters);
+    std::size_t size = std::string_view{"idle\n"}.size();
+    for (; rows < letters.size(); ++rows) {
+      const std::size_t row = cli::fleet::to_row(bench.owner->robot(rows)).size();
+      if (size + row > room) break;
+      left = room - size - row;  // the line end of the last one has room besides
+      size += row + 1;
+    }
+  }
+  REQUIRE(rows < letters.size());
+  for (unsigned index = 0; index < rows; ++index)
+    letters[index] += left / rows + (index < left % rows ? 1U : 0U);
+  for (const bool full : {true, false}) {  // as it is, and one byte too long
+    CAPTURE(full);
+    if (!full) ++letters[0];
+    Bench bench;
+    fill(bench, letters);
+    const std::string answer = bench.ask("robots", "robots");
+    CHECK(answer.ends_with(fmt::format("\nmore {}\n", full ? rows : rows - 1)));
+    if (full) CHECK(answer.find("more ") == std::string_view{"ok\n"}.size() + room + 1);
+  }
 }
 
 /// A radio on which 130 robots are seen.

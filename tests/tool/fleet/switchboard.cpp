@@ -170,6 +170,15 @@ TEST_CASE("switchboard: what is typed keeps it busy until it is with the robot")
   CHECK_FALSE(bench.board->busy());
 }
 
+TEST_CASE("switchboard: a packet of which its line takes a part only keeps it busy, with none behind it") {
+  Bench bench;
+  CHECK(bench.after(1ms, "start\nconn 0\n") == "scanning\nconnecting 0\nconnected 0\n");
+  for (int i = 0; i < 100'000 && !bench.board->busy(); ++i)
+    static_cast<void>(bench.after(1ms, "{U,90,50}\n"));
+  CHECK(bench.board->busy());
+  CHECK(bench.summary().ends_with("server  nothing was lost\n"));
+}
+
 TEST_CASE("switchboard: a line that is closed sends what it has, for 300 ms at most") {
   Bench bench;
   CHECK(bench.after(1ms, "start\nconn 0\n") == "scanning\nconnecting 0\nconnected 0\n");

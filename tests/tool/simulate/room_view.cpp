@@ -116,7 +116,7 @@ TEST_CASE("room view: each thing has its style, and what is chosen or touches so
   is_as_in("tests/tool/simulate/golden/styles.txt", all);
 }
 
-TEST_CASE("room view: more robots than digits, and than lines beside the room") {
+sim::SeenWorld twelve_mappers() {
   sim::SeenWorld world = two_mappers();
   world.robots.resize(1);
   for (int i = 1; i < 12; ++i) {
@@ -127,10 +127,29 @@ TEST_CASE("room view: more robots than digits, and than lines beside the room") 
     robot.beams.clear();
     world.robots.push_back(robot);
   }
+  return world;
+}
+
+TEST_CASE("room view: more robots than digits, and than lines beside the room") {
+  const sim::SeenWorld world = twelve_mappers();
   std::string all;
   for (const std::size_t rows : {30U, 24U, 23U, 22U, 12U})
     all += text_of(draw_room(world, {}, {.chosen = 10}, {100, rows}, rows != 24));
   is_as_in("tests/tool/simulate/golden/many_robots.txt", all);
+}
+
+TEST_CASE(
+    "room view: the last robot of the list may have the last line, which else says how many there are") {
+  const sim::SeenWorld world = twelve_mappers();
+  // The chosen one has seven lines, a blank one is behind them, and the others have eleven.
+  const auto drawn = [&world](std::size_t rows) {
+    return text_of(draw_room(world, {}, {.chosen = 10}, {100, rows + 2}, false));
+  };
+  CHECK(drawn(19).find("+ robot_11  1.65  0.25") != std::string::npos);
+  CHECK(drawn(19).find(" more\n") == std::string::npos);
+  CHECK(drawn(18).find("9 robot_8   1.20  0.25") != std::string::npos);
+  CHECK(drawn(18).find("robot_9 ") == std::string::npos);
+  CHECK(drawn(18).find("and 2 more\n") != std::string::npos);
 }
 
 TEST_CASE("room view: a light is the letter of its nearest colour") {
@@ -274,6 +293,28 @@ TEST_CASE("room view: the room begins at its upper left edges, and ends before t
   CHECK(drawn_at({1, 0.251}).empty());
   CHECK(drawn_at({1, -10.249}) == "4,20");
   CHECK(drawn_at({1, -10.25}).empty());
+}
+
+TEST_CASE("room view: in letters a line has one a column, or where it is steep one a row") {
+  // As above: a column is 0.25 m wide, a row 0.5 m high, and 0, 0 is in the middle of the first.
+  sim::SeenWorld world{"edges", base::Time{}};
+  world.walls.push_back({{0, 0}, {0, 0}});
+  world.walls.push_back({{13.25, -1}, {13.25, -1}});
+  const auto drawn = [&world](sim::Vector from, sim::Vector to) {
+    world.line.assign(1, sim::Segment{from, to});
+    const auto picture = draw_room(world, {}, {}, {80, 23}, false);
+    std::string places;
+    for (std::size_t row = 1; row + 1 < picture.size(); ++row) {
+      std::string text;
+      for (const top::Piece& piece : picture[row]) text += piece.text;
+      for (std::size_t i = 0; i < text.size(); ++i)
+        if (text[i] == ':') places += std::to_string(i) + ',' + std::to_string(row - 1) + ' ';
+    }
+    return places;
+  };
+  // From the column 4.3 and the row 1.4 to 5.5 and 5.3; and from 4.4 and 1.3 to 8.3 and 2.5.
+  CHECK(drawn({0.95, -0.45}, {1.25, -2.4}) == "4,1 4,2 4,3 5,4 5,5 ");
+  CHECK(drawn({0.975, -0.4}, {1.95, -1.0}) == "4,1 5,1 6,1 7,2 8,2 ");
 }
 
 TEST_CASE("room view: figures that no world has do no harm") {

@@ -121,7 +121,7 @@ class Noise(Central):
     """A device at another speed: of what comes, no line ends with three letters."""
 
     def feed(self, char):
-        self.write("\x01abcd\x02ab\n")
+        self.write("ab\n\x01abcd\x02ab\n")
 
 
 class Silent(Central):

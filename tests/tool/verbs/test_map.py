@@ -1,12 +1,15 @@
 """amiroctl map: what its files hold, how it agrees with true walls, and what is said when it fails."""
 
 import contextlib
+import fcntl
 import json
 import os
 import pty
 import re
 import resource
 import signal
+import struct
+import termios
 import time
 import xml.etree.ElementTree as ElementTree
 
@@ -142,17 +145,30 @@ class Map(Case):
     def test_on_a_terminal_it_says_each_ten_seconds_how_far_it_is(self):
         terminal, end = pty.openpty()
         self.addCleanup(os.close, terminal)
-        tool = self.start("map", self.path("a.pgm"), "--watch", "--duration", "12s", "--scan", "200ms", stderr=end)
+        # Cells of such a size that what is free ahead of it ends in the last one that is stored, 32 of them from the first.
+        self.avr.x = 0.2
+        self.avr.start = (0.2, 0.5, 0.0)
+        file = self.path("a.pgm")
+        tool = self.start("map", file, "--watch", "--duration", "12s", "--scan", "200ms", "--resolution", "1.967", "--json", stderr=end)
         os.close(end)
-        tool.communicate(timeout=60)
-        said = b""
-        with contextlib.suppress(OSError):  # its end
-            while piece := os.read(terminal, 4096):
-                said += piece
+        out, _ = tool.communicate(timeout=60)
+        said = self.read_to_the_end(terminal)
         self.assertEqual(tool.returncode, 0, said)
         told = re.findall(rb"map: (\d+) s: [01]\.\d\d m2 free, [1-9]\d* updates\r\n", said)
         self.assertEqual(len(told), 1, said)
         self.assertGreaterEqual(int(told[0]), 10)
+        # The outermost cells count, too.
+        with open(file, "rb") as picture:
+            free = re.sub(rb"^P5\n.*\n.*\n255\n", b"", picture.read()).count(254)
+        self.assertAlmostEqual(json.loads(out)["free_m2"], free * 0.01967**2, delta=1e-4)
+
+    def read_to_the_end(self, terminal):
+        """What a program has written there, which has ended."""
+        said = b""
+        with contextlib.suppress(OSError):  # its end
+            while piece := os.read(terminal, 4096):
+                said += piece
+        return said
 
     def check_drawn(self, file):
         """Some of the room is free."""
@@ -189,8 +205,20 @@ class Map(Case):
         figures = json.loads(out)
         self.assertEqual((figures["done"], figures["ended"]), (False, "out_of_range"))
         self.assertLess(figures["border_known"], 0.9)
-        out, _ = self.map(self.path("a.pgm"), "--world", world, code=1, duration="60s")
-        self.assertRegex(out, r"not all: the rest is out of the radio's range, in \d+ s: .* m2 free, \d+ % of their border known")
+        # On a terminal lines are broken; those that go on begin with four blanks.
+        terminal, end = pty.openpty()
+        self.addCleanup(os.close, terminal)
+        fcntl.ioctl(end, termios.TIOCSWINSZ, struct.pack("4H", 24, 80, 0, 0))
+        tool = self.start("map", self.path("a.pgm"), "--world", world, "--duration", "60s", "--scan", "200ms", stdout=end)
+        os.close(end)
+        _, err = tool.communicate(timeout=60)
+        self.assertEqual(tool.returncode, 1, err)
+        broken = self.read_to_the_end(terminal).decode().replace("\r\n", "\n")
+        self.assertLessEqual(max(map(len, broken.splitlines())), 80, broken)
+        self.assertRegex(broken, r"\nagreement .*\n    \S.*\n$")
+        out = broken.replace("\n    ", " ")
+        self.assertRegex(out, r"not all: the rest is out of the radio's range, in \d+ s: .* m2 free, \d+ % of their border known; "
+                              r"\d+ updates? drawn, \d+ not, because a robot turned; \d+ goals?\n")
         self.assertRegex(out, r"\nagreement with the true walls within 6 cm: precision [01]\.\d{3}, recall [01]\.\d{3}; explored [01]\.\d{3}\n$")
 
     def test_the_robot_is_lost(self):
