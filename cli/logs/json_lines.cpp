@@ -499,12 +499,11 @@ bool JsonLineParser::put_field(std::span<std::uint8_t> data, std::span<const std
     const auto size = static_cast<std::size_t>(fields[i].print(present, before.data()) - present);
     if (text == std::string_view{present, size}) return true;
   }
-  if (!named.value.is_string && !field.is_float()) {
-    const auto number = base::parse_decimal(text);
+  if (const auto number = base::parse_decimal(text); number && !field.is_float()) {
     const auto present_number = field.physical(field.raw(before));
-    if (record_.data && number && present_number && *number == *present_number) return true;  // 2.50, 1e-06
-    if (const auto raw = number ? field.raw_from(*number) : base::Result<std::int64_t>{number.error})
-      return give(data, before, field, text, *raw);
+    if (record_.data && present_number && *number == *present_number) return true;  // 2.50, 1e-06
+    if (!named.value.is_string && !words::detail::is_fraction(field, *number))
+      if (const auto raw = field.raw_from(*number)) return give(data, before, field, text, *raw);
   }
   const auto raw = words::parse_value(field, text);
   if (!raw && !named.value)

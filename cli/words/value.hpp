@@ -143,6 +143,10 @@ namespace detail {
          field.offset.exponent >= 0;
 }
 
+[[nodiscard]] inline bool is_fraction(const protocol::Field& field, const base::Decimal& number) {
+  return is_whole(field) && base::normalised(number.digits, number.exponent).exponent < 0;
+}
+
 }  // namespace detail
 
 /// A number for a field, from "0.05m/s", "12" (in the field's unit), "0x0C" (the same) or the name of a value
@@ -179,7 +183,7 @@ namespace detail {
                    : field.is_float() ? field.float_from(physical->as_double())
                                       : field.raw_from(*physical);
   if (!raw) return detail::quoted(text) + " is out of range: " + detail::takes(field);
-  if (detail::is_whole(field) && base::normalised(physical->digits, physical->exponent).exponent < 0)
+  if (detail::is_fraction(field, *physical))
     return detail::quoted(text) + " is no whole number: " + detail::takes(field);
   return *raw;
 }

@@ -253,6 +253,7 @@ TEST_CASE("JSON lines: an edited value counts, unused bits stay", "[output]") {
   const std::string far = replaced(replaced(gyroscope, "0.0525", "573.4225"), "0300FFFF", "FF7FFFFF");
   CHECK(frame_of(far) == "608#FF7FFFFF0000");
   CHECK(frame_of(replaced(far, "573.4225", "5.734225e2")) == "608#FF7FFFFF0000");
+  CHECK(frame_of(replaced(far, "573.4225", "\"5.734225e2\"")) == "608#FF7FFFFF0000");
   CHECK(has(frame_of(replaced(far, "573.4225", "570")), "out of range"));
   // Keys as jq -S sorts them, blanks, unknown keys.
   CHECK(
@@ -718,6 +719,17 @@ TEST_CASE("JSON lines: a value that is none says what the field takes, and what 
         "'5' is out of range: x takes -1 to 1 m/s; leave the field out, and data counts");
   CHECK(frame_of(R"({"topic":"motors","fields":{"x":true}})") ==
         "field \"x\" has no value; x takes -1 to 1 m/s; write a number or a string");
+  // Of a count there is no fraction, as a number and as a text.
+  for (const std::string value : {"1.5", "\"1.5\"", "15e-1"})
+    CHECK_THAT(frame_of(R"({"topic":"led_1","fields":{"red":)" + value + "}}"),
+               Catch::Contains("1") &&
+                   Catch::Contains("is no whole number: red takes 0 to 255; write a value in its range"));
+  CHECK_THAT(frame_of(R"({"topic":"led_1","fields":{"red":-0.4}})"), Catch::Contains("'-0.4'"));
+  CHECK_THAT(
+      frame_of(R"({"topic":"led_1","fields":{"red":1.5},"data":"000000"})"),
+      Catch::Contains("'1.5' is no whole number: red takes 0 to 255; leave the field out, and data counts"));
+  CHECK(frame_of(R"({"topic":"led_1","fields":{"red":2.0}})") ==
+        frame_of(R"({"topic":"led_1","fields":{"red":2}})"));
 }
 
 /// A message of a byte, of which 10 to 20 are stated, and one without fields.
