@@ -137,6 +137,12 @@ void FleetWatch::begin() {
       picture.robots.push_back({peer.name, drawing_.path(peer.index), {}});
     return fleet::to_form(drawing_.map(), picture, form);
   });
+}
+
+/// Where robots began, those among them that were found later: programs that join ask for it, and by it the
+/// fleet judges how far away a robot is.
+void FleetWatch::place() {
+  if (line_->own() == nullptr) return;
   for (const auto& peer : line_->end().peers())
     for (const fleet::Start& start : known_.starts)
       if (start.name == peer.name) line_->own()->server().fleet().set_origin(peer.index, start.pose);
@@ -157,6 +163,7 @@ void FleetWatch::step() {
   const base::Time now = fleet::line_time();
   robots_ = line_->end().peers().size();
   for (const Order& order : orders_->take()) obey(order);
+  place();
   errands_.step(line_->end(), now);
   for (const ViewerId viewer : attendance_.silent(errands_.driving(line_->end()), *viewers_, now)) {
     errands_.gone(line_->end(), viewer);

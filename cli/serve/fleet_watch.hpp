@@ -52,6 +52,7 @@ class FleetWatch {
   /// The line is there again, as far as can be seen.
   [[nodiscard]] bool is_there() const;
   void begin();
+  void place();
   void step();
   void obey(const Order& order);
   [[nodiscard]] fleet::RobotNow robot(unsigned index) const;

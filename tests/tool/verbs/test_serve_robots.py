@@ -80,6 +80,21 @@ class Robots(Case):
 
     # --- what is seen ---
 
+    def assert_origins_are_told(self):
+        """To a program that joins the line."""
+        with socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET) as caller:
+            caller.settimeout(30)
+            caller.connect(glob.glob(os.path.join(self.folder, "ocm", "line-*.sock"))[0])
+            caller.send(b"hello 1 stranger")
+            self.assertEqual(caller.recv(65536), b"ok\nserve")
+            caller.send(b"robots 0")
+            rows = [row for row in caller.recv(65536).decode().splitlines() if row.startswith("index=")]
+        robots = [dict(field.split("=", 1) for field in row.split("\t")) for row in rows]
+        self.assertEqual([(robot["name"], robot["origin_known"]) for robot in robots], [("AVR", "1"), ("Arduino", "1")])
+        for robot, start in zip(robots, ((0.4, 0.5, 0), (0.8, 0.5, math.pi / 2))):
+            for value, expected in zip(robot["origin"].split(","), start):
+                self.assertAlmostEqual(float(value), expected, delta=0.02)
+
     def test_robots_and_their_map(self):
         self.avr.room = self.arduino.room = (0.0, 0.0, 2.4, 1.0)
         _, port, token = self.serve()
@@ -156,6 +171,16 @@ class Robots(Case):
         self.robot(viewer, "Arduino", lambda r: r["linked"], "a link to it")
         state = self.state(viewer, lambda s: not s["scans"] and len(s["unplaced"]) == 2, "that of two robots the starts must be known")
         self.assertEqual(state["unplaced"], ["AVR", "Arduino"])
+
+    def test_where_a_robot_began_that_a_look_finds_is_told_to_who_joins(self):
+        self.central.robots = [self.avr]
+        _, port, token = self.serve("--allow-commands")
+        viewer = self.viewer(port, token, "/ocm/fleet")
+        self.robot(viewer, "AVR", lambda r: r["linked"], "a link to the first")
+        self.central.robots = [self.avr, self.arduino]
+        viewer.publish("/ocm/fleet", {"order": "look"})
+        self.robot(viewer, "Arduino", lambda r: r["linked"], "a link to the second")
+        self.assert_origins_are_told()
 
     def test_a_robot_that_a_look_finds_and_that_cannot_be_linked_is_named(self):
         self.central.robots = [self.avr]
@@ -338,19 +363,7 @@ class Robots(Case):
 
     def test_others_join_it(self):
         _, _, _, viewer = self.both()
-        # They hear of it where its robots began.
-        with socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET) as caller:
-            caller.settimeout(30)
-            caller.connect(glob.glob(os.path.join(self.folder, "ocm", "line-*.sock"))[0])
-            caller.send(b"hello 1 stranger")
-            self.assertEqual(caller.recv(65536), b"ok\nserve")
-            caller.send(b"robots 0")
-            rows = [row for row in caller.recv(65536).decode().splitlines() if row.startswith("index=")]
-        robots = [dict(field.split("=", 1) for field in row.split("\t")) for row in rows]
-        self.assertEqual([(robot["name"], robot["origin_known"]) for robot in robots], [("AVR", "1"), ("Arduino", "1")])
-        for robot, start in zip(robots, ((0.4, 0.5, 0), (0.8, 0.5, math.pi / 2))):
-            for value, expected in zip(robot["origin"].split(","), start):
-                self.assertAlmostEqual(float(value), expected, delta=0.02)
+        self.assert_origins_are_told()
         out, err = self.run_tool("goto", "AVR", "0", "20")
         self.assertEqual((out, err), ("AVR: x 20 cm, y 0 cm, heading 0 deg\n", ""))
         robot = self.robot(viewer, "AVR", lambda r: r["at"]["x_m"] > 0.55, "its new place")
