@@ -95,10 +95,12 @@ int report(const std::string& name, const Result& result) {
   return exit_failure;
 }
 
-/// It did not say how it ended. It was stopped, as far as could be.
+/// It did not say how it ended. Where it may have turned it was stopped, as far as could be.
 [[noreturn]] void give_up(const CalibrateOptions& options, const std::string& name, const RobotNow& robot,
                           const RobotNow& last, bool halted) {
-  const std::string_view end = halted ? "it was stopped" : "it may still turn";
+  const std::string_view end = !last.may_turn() ? "it does not turn"
+                               : halted         ? "it was stopped"
+                                                : "it may still turn";
   if (robot.lost)
     fail({fmt::format("calibrate: {} is lost: {}", name,
                       robot.linked ? fmt::format("it has said nothing for its deadline; {}", end)

@@ -133,7 +133,7 @@ class Played(Case):
         self.avr.silent = True
         _, err = tool.communicate(timeout=60)
         self.assertEqual(tool.returncode, 1)
-        self.assertIn("AVR is lost: it has said nothing for its deadline", err)
+        self.assertIn("AVR is lost: it has said nothing for its deadline; it does not turn", err)
         self.assertLess(self.avr.heard.count("{C,0}"), 6)  # one each 700 ms; of a robot that speaks, for 10 s
 
 
