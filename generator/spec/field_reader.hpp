@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -179,9 +180,9 @@ class FieldReader : protected NodeReader {
   /// Members that a field brings: itself and its accessors.
   void claim_member(const At& at, std::map<std::string, std::string>& members, const std::string& member) {
     const auto [other, is_new] = members.emplace(member, at.path);
-    if (!is_new && other->second != at.path)
-      tell(at, "the generated struct would have two members " + member + " (see " + other->second + ")",
-           "another name for one of them");
+    if (is_new) return;
+    const std::string where = other->second == at.path ? "" : " (see " + other->second + ")";
+    tell(at, "the generated struct would have two members " + member + where, "another name for one of them");
   }
 
   [[nodiscard]] static std::uint8_t bytes_of(std::uint64_t mask) {
@@ -226,7 +227,9 @@ class FieldReader : protected NodeReader {
       claim_member(name_at, members, field.name + "_" + field.unit_name);
       claim_member(name_at, members, "set_" + field.name + "_" + field.unit_name);
     }
+    std::set<std::string> named;
     for (const ValueModel& value : field.values) {
+      if (!named.insert(value.name).second) continue;  // told already
       if (field.flags) {
         claim_member(name_at, members, value.name);
         claim_member(name_at, members, "set_" + value.name);

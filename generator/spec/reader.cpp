@@ -258,7 +258,8 @@ class Reader : private FieldReader {
              "one topic with a frame of this count: a request then serves all");
     }
     read_names(at, topic);
-    if (const auto a = require(at, "board", "which of the boards serves it")) read_board(*a, model, topic);
+    const auto board = require(at, "board", "which of the boards serves it");
+    const bool has_board = board && read_board(*board, model, topic);
     std::optional<std::uint8_t> topic_id;
     if (const auto a = require(at, "id",
                                sensor ? "the number that requests carry, \"0x08\""
@@ -282,7 +283,7 @@ class Reader : private FieldReader {
           {"pose", protocol::Role::pose},     {"ring", protocol::Role::ring},
           {"floor", protocol::Role::floor}};
       topic.role = one_of(*a, roles).value_or(protocol::Role::none);
-      check_role(*a, topic);
+      check_role(*a, topic, has_board);
     }
     read_geometry(at, topic);
     return topic;
@@ -319,20 +320,22 @@ class Reader : private FieldReader {
     return is_new;
   }
 
-  void read_board(const At& at, const Model& model, TopicModel& topic) {
-    if (!is_kind(at, Kind::string, "the name of a board")) return;
+  /// False if there is no such board.
+  bool read_board(const At& at, const Model& model, TopicModel& topic) {
+    if (!is_kind(at, Kind::string, "the name of a board")) return false;
     for (std::size_t i = 0; i < model.boards.size(); ++i) {
       if (model.boards[i].name != at.node->text || at.node->text.empty()) continue;
       topic.board = static_cast<std::uint8_t>(i);
-      return;
+      return true;
     }
-    if (!boards_known_) return;  // told already
+    if (!boards_known_) return false;  // told already
     std::vector<std::string> names;
     for (const BoardModel& board : model.boards)
       if (!board.name.empty()) names.push_back(board.name);
     const std::string near = nearest_name(at.node->text, names);
     tell(at, "unknown board " + quoted(at.node->text),
          !near.empty() ? "did you mean " + quoted(near) + "?" : "one of " + list_of(names));
+    return false;
   }
 
   /// Every id of `count` consecutive ones, in one direction of the bus.
@@ -488,7 +491,7 @@ class Reader : private FieldReader {
   // --- roles ---
 
   /// What a tool relies on, that knows the role and not the robot.
-  void check_role(const At& at, const TopicModel& topic) {
+  void check_role(const At& at, const TopicModel& topic, bool has_board) {
     using protocol::Role;
     const bool sensor = topic.kind == protocol::Kind::sensor;
     const bool acts = topic.role == Role::drive || topic.role == Role::light;
@@ -498,7 +501,7 @@ class Reader : private FieldReader {
       return tell(at, "role " + shown(*at.node) + " is for " + (acts ? "actuators" : "sensors"),
                   acts ? "leave it out, or say \"kind\": \"actuator\""
                        : "leave it out, or leave out \"kind\": \"actuator\"");
-    if (reports) {
+    if (reports && has_board) {
       const auto [other, is_new] = reports_.emplace(std::pair{topic.board, topic.role}, at.path);
       if (!is_new)
         tell(at,

@@ -457,6 +457,10 @@ TEST_CASE("a topic of an unknown board has that problem alone") {
         Lines{R"(f:3: /topics/1/board: unknown board "rihgt"; did you mean "right"?)"});
   CHECK(problems("rihgt", "right") ==
         Lines{R"(f:3: /topics/0/board: unknown board "rihgt"; did you mean "right"?)"});
+  CHECK(problems("left", "rihgt") ==
+        Lines{R"(f:3: /topics/1/board: unknown board "rihgt"; did you mean "right"?)"});
+  CHECK(problems("rihgt", "left") ==
+        Lines{R"(f:3: /topics/0/board: unknown board "rihgt"; did you mean "right"?)"});
 }
 
 TEST_CASE("what only the schema sees is reported with its place, and with what the schema says of it") {
