@@ -1,6 +1,7 @@
 // ocm-generate SPEC -o HEADER: a robot's C++ header from its spec; --to TARGET: another file from it.
 #include <algorithm>
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <exception>
@@ -277,6 +278,7 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   std::set_new_handler(end_without_memory);
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is said like a full disk
   try {
     return run(argc, argv);
   } catch (const std::exception& error) {

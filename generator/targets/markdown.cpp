@@ -397,7 +397,8 @@ class Page {
 
   static std::string message_row(const MessageModel& message, const FieldModel& field) {
     const std::string unit = field.unit.empty() ? "" : " " + prose(field.unit);
-    std::string scale = field.scale == base::Decimal{1, 0} && unit.empty() ? "" : print(field.scale) + unit;
+    const bool plain = field.scale == base::Decimal{1, 0} && unit.empty() && field.offset.digits == 0;
+    std::string scale = plain ? "" : print(field.scale) + unit;
     if (field.offset.digits != 0) scale += ", from " + print(field.offset) + unit;
     std::string named;
     for (const auto& value : field.values)
