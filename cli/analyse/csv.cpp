@@ -258,7 +258,6 @@ TaskSet read_tasks(const std::string& file) {
   for (const Line& line : table.lines()) {
     TaskEntry entry;
     entry.name = table.cell(line, "name");
-    entry.line = line.number;
     if (entry.name.empty()) entry.name = fmt::format("line {}", line.number);
     entry.priority = table.number(line, "priority", std::numeric_limits<std::int64_t>::min());
     entry.task.cost = table.number(line, "C_ns", 1);

@@ -13,7 +13,7 @@ template <class... Tasks>
 TaskSet set_of(analysis::TaskList<Tasks...>) {
   const std::int64_t levels = 1 + std::max({static_cast<std::int64_t>(Tasks::task.level)...});
   TaskSet set;
-  (set.entries.push_back({std::string{Tasks::name}, levels - Tasks::task.level, Tasks::task, 0}), ...);
+  (set.entries.push_back({std::string{Tasks::name}, levels - Tasks::task.level, Tasks::task}), ...);
   std::stable_sort(set.entries.begin(), set.entries.end(),
                    [](const TaskEntry& a, const TaskEntry& b) { return a.priority > b.priority; });
   return set;

@@ -71,7 +71,6 @@ struct TaskEntry {
   std::string name;
   std::int64_t priority = 0;  ///< greater is more urgent
   analysis::Task task;        ///< its level is the place of its priority
-  std::size_t line = 0;
 };
 /// The most urgent first.
 struct TaskSet {

@@ -48,10 +48,12 @@ class Schedule {
   };
 
   void choose() {
+    // What has no bound comes after those that are late, and before those that are in time, be it just so.
     const auto urgency = [this](std::size_t i) {
       const auto& r = study_.rows[i].result;
-      if (!r.bounded()) return 1.0;  // after those that are late by so much, before those that are not
-      return static_cast<double>(r.response) / static_cast<double>(r.deadline);
+      const double share =
+          r.bounded() ? static_cast<double>(r.response) / static_cast<double>(r.deadline) : 1.0;
+      return std::pair{share, !r.bounded()};
     };
     for (std::size_t i = 1; i < study_.rows.size(); ++i)
       if (urgency(i) > urgency(victim)) victim = i;
@@ -90,7 +92,7 @@ class Schedule {
       std::size_t chosen = rows.size();
       for (std::size_t i = 0; i < rows.size(); ++i) {
         Job& job = jobs[i];
-        while (job.next <= now && releases[i].size() < most_pieces) {
+        while (job.next <= now) {
           releases[i].push_back(job.next);
           ++job.waiting;
           const std::int64_t early =

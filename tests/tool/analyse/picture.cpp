@@ -52,6 +52,7 @@ TEST_CASE("picture: what has no bound goes before what is in time, and behind wh
           "[shared]") {
   CHECK(drawn({{"a", 6, 10, 10}, {"b", 5, 10, 10}, {"c", 1, 10, 10}}) == "b");
   CHECK(drawn({{"a", 6, 10, 5}, {"b", 5, 10, 10}}) == "a");
+  CHECK(drawn({{"a", 6, 10, 6}, {"b", 5, 10, 10}}) == "b");  // a just in time
 }
 
 }  // namespace tool_analyse_picture_test
