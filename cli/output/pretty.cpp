@@ -185,13 +185,16 @@ class Pretty final : public Output {
   void time(Buffer& out, const Event& event) {
     if (!started_) begin_ = event.entry.time;
     started_ = true;
-    const std::int64_t us = (event.entry.time - begin_).count() / 1000;
-    const std::uint64_t magnitude = base::detail::magnitude(us);
+    // Two times can be further apart than a signed number counts.
+    const auto begin = static_cast<std::uint64_t>(begin_.time_since_epoch().count());
+    const auto at = static_cast<std::uint64_t>(event.entry.time.time_since_epoch().count());
+    const bool before = event.entry.time < begin_;
+    const std::uint64_t magnitude = (before ? begin - at : at - begin) / 1000;
     char text[64];
     char* to = text;
     if (colour_) to = std::copy(dim.begin(), dim.end(), to);
     *to = '-';
-    to += us < 0 ? 1 : 0;
+    to += before && magnitude != 0 ? 1 : 0;
     const std::uint64_t seconds = magnitude / 1'000'000;
     for (std::uint64_t least = 10'000; least > 1 && seconds < least; least /= 10) *to++ = ' ';
     to = put_unsigned(to, seconds);

@@ -165,6 +165,8 @@ TEST_CASE("pretty lines say the time since the first frame, and how far before i
   CHECK(second(microseconds{9'999'000'000}) == " 9999.000000");
   CHECK(second(microseconds{10'000'000'000}) == "10000.000000");
   CHECK(second(microseconds{-1'500'000}) == "-    1.500000");
+  CHECK(second(base::Duration{-999}) == "    0.000000");
+  CHECK(second(base::Duration::min()) == "-9223372036.854775");
 }
 
 TEST_CASE("raw lines are candump's", "[output]") {
