@@ -404,7 +404,8 @@ void Runner::sum_up() {
   add_count(text, counters_.not_kept, "frame", "that a kill would have lost from the black box");
   add_count(text, box_.dropped(), "frame", "that the black box had no room for");
   add_count(text, lines_lost_, "event line", "not printed");
-  add_count(text, done.not_a_number, "values that are no number");
+  add_count(text, done.not_a_number, "value",
+            done.not_a_number == 1 ? "that is no number" : "that are no number");
   add_count(text, bus_->counters().lost, "frame", "lost");
   if (counters_.late != 0)
     text += fmt::format(", {} later than \"reaction\", up to {}", counted(counters_.late, "step"),

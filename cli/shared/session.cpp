@@ -116,8 +116,8 @@ spec::Model Session::load(const std::string& word) const {
   for (const auto& doubt : std::span{loaded.doubts}.first(told))
     remark(fmt::format("{}: {}; {}", doubt.place, doubt.what, doubt.remedy));
   if (told < loaded.doubts.size())
-    remark(fmt::format("{}: {} more doubtful places; --strict-spec shows all and refuses", file,
-                       loaded.doubts.size() - told));
+    remark(fmt::format("{}: {}; --strict-spec shows all and refuses", file,
+                       counted(loaded.doubts.size() - told, "more doubtful place")));
   spec::Model model = loaded.spec->take_model();
   if (!interface.empty()) model.put_on(interface);
   return model;

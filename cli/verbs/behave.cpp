@@ -81,11 +81,10 @@ can::Frame set_point_of(const protocol::Topic& topic, const BehaveOptions& optio
   return client::set_point(topic, raw, options.priority);
 }
 
-std::string remedy_for(const std::string& ended, bool by_ring) {
+std::string remedy_for(const std::string& ended) {
   if (ended == "line_lost")
     return "put the robot on the line, or go more slowly: docs/behaviours.md has the least radius for a "
            "speed";
-  if (ended == "no_sample" && by_ring) return std::string{ring_without_offsets};
   if (ended == "no_sample") return "`amiroctl doctor` shows which part does not answer";
   if (ended == "late") return "streams take the board's time: `amiroctl stop`, then ask for slower ones";
   return "another program has commanded the robot";
@@ -165,9 +164,7 @@ class Behaviour {
     const bool taken = end();
     const bool could_answer = (watch_ && timeline_.has_asked()) || Clock::now() - begun_ >= longest_silence;
     if (unheard() && could_answer && goes_on_ && taken) fail(unanswered());
-    const bool by_ring = options_->which == "avoid" || options_->which == "home";
-    if (early)
-      fail({fmt::format("behave: {} was ended: {}", options_->which, how), remedy_for(how, by_ring)});
+    if (early) fail({fmt::format("behave: {} was ended: {}", options_->which, how), remedy_for(how)});
     if (!goes_on_) return exit_code_after_interrupt(exit_success);
     return taken ? exit_success : exit_failure;
   }

@@ -272,6 +272,7 @@ TEST_CASE("operate: values that are no number are summed up") {
   CHECK_THAT(said_of({one, one}), Catch::Contains("operate: 0 changes, ") && !Catch::Contains("number"));
   CHECK_THAT(said_of({one, none, none}),
              Catch::Contains("operate: 0 changes, ") && Catch::Contains(", 2 values that are no number"));
+  CHECK_THAT(said_of({one, none}), Catch::Contains(", 1 value that is no number"));
   // What is beyond all numbers is above the limit.
   CHECK_THAT(said_of({infinite}), Catch::Contains("operate: 1 change, ") && !Catch::Contains("number"));
 }
