@@ -1,6 +1,7 @@
 // What `operate` answers, prints and sums up where a run is less smooth than others: a socket
 // that is lost more than once, more changes than it remembers, a request that is dropped, frames that are
-// lost or replaced, a refusal without a reason, values that are no number.
+// lost or replaced, a refusal without a reason, values that are no number, set points that the bus does not
+// take.
 #include <csignal>
 #include <cstddef>
 #include <cstdint>
@@ -18,6 +19,7 @@
 #include <fmt/format.h>
 
 #include "ocm/can/error_frame.hpp"
+#include "ocm/can/text.hpp"
 #include "ocm/protocol/codec.hpp"
 #include "ocm/protocol/identifier.hpp"
 #include "ocm/topics/amiro.hpp"
@@ -56,6 +58,12 @@ constexpr std::string_view file_text = R"({
 constexpr std::string_view repeating_text = R"({
   "name": "told", "initial": "halted", "fall_back": "halted", "settle": "60ms", "reaction": "5ms", "handling": "1ms",
   "configurations": [{"name": "halted", "entry": [{"topic": "motors", "priority": "urgent", "repeat": "100ms"}]}]
+})";
+
+/// It asks for nothing, and what programs command may change slowly.
+constexpr std::string_view slow_text = R"({
+  "name": "told", "initial": "slow", "fall_back": "slow", "settle": "60ms", "reaction": "5ms", "handling": "1ms",
+  "configurations": [{"name": "slow", "limits": [{"field": "motors.x", "min": "-0.5m/s", "max": "0.5m/s", "per_second": "0.1m/s"}]}]
 })";
 
 std::string bus_name() {
@@ -275,6 +283,70 @@ TEST_CASE("operate: values that are no number are summed up") {
   CHECK_THAT(said_of({one, none}), Catch::Contains(", 1 value that is no number"));
   // What is beyond all numbers is above the limit.
   CHECK_THAT(said_of({infinite}), Catch::Contains("operate: 1 change, ") && !Catch::Contains("number"));
+}
+
+constexpr const char* fast = "send 201#20A1070000000000";  // 0.5 m/s
+constexpr const char* rest = "send 201#0000000000000000";
+
+/// The velocity of the motors that was passed on, in um/s, as the answer has it.
+std::int64_t passed_on(const std::string& answer) {
+  CAPTURE(answer);
+  REQUIRE(answer.starts_with("ok\n201#"));
+  const auto frame = can::parse_frame(answer.substr(3, answer.find('\n', 3) - 3));
+  REQUIRE(frame);
+  return amiro::catalogue.find("motors")->frames[0].fields[0].raw(frame->data);
+}
+/// Within what changes in a millisecond.
+void check_velocity(const std::string& answer, std::int64_t expected) {
+  const std::int64_t found = passed_on(answer);
+  CHECK(found > expected - 100);
+  CHECK(found < expected + 100);
+}
+
+TEST_CASE("operate: behind a rest that a program has commanded a velocity comes up from rest again") {
+  const auto told = run(slow_text, 400ms, {{100ms, fast}, {200ms, fast}, {210ms, rest}, {260ms, fast}});
+  REQUIRE(told.answers.size() == 4);
+  check_velocity(told.answers[0], 0);
+  check_velocity(told.answers[1], 10'000);
+  CHECK(told.answers[2] == "ok\n201#0000000000000000\n");
+  check_velocity(told.answers[3], 5'000);
+}
+
+TEST_CASE("operate: a set point that the bus did not take is not where the next one starts from") {
+  PlayedBus::Conditions conditions;
+  conditions.room = 1;
+  conditions.stuck = {{World::start + 150ms, World::start + 650ms}};
+  const auto told = run(slow_text, 800ms,
+                        {{100ms, fast},
+                         {200ms, fast},
+                         {300ms, fast},
+                         {400ms, fast},
+                         {500ms, fast},
+                         {600ms, fast},
+                         {700ms, fast}},
+                        conditions);
+  REQUIRE(told.answers.size() == 7);
+  check_velocity(told.answers[0], 0);
+  check_velocity(told.answers[1], 10'000);
+  for (std::size_t i = 2; i < 6; ++i) CHECK(told.answers[i].starts_with("wait"));
+  // Of a longer time without a set point 100 ms count.
+  check_velocity(told.answers[6], 20'000);
+  CHECK_THAT(told.said, Catch::Contains(", 3 set points passed on, 3 set points limited"));
+}
+
+TEST_CASE("operate: what waits behind the last set point of a program is none that it waits for") {
+  constexpr std::string_view lit_text = R"({
+    "name": "told", "initial": "here", "fall_back": "here", "settle": "60ms", "reaction": "5ms", "handling": "1ms",
+    "configurations": [{"name": "here", "entry": [{"topic": "led_2", "values": {"green": "9"}, "repeat": "100ms"}]}]
+  })";
+  PlayedBus::Conditions conditions;
+  conditions.stuck = {{World::start + 150ms, World::start + 450ms}};
+  // Of its own set points that of 200 ms goes first, and those of 300 and of 400 ms behind.
+  const auto told =
+      run(lit_text, 600ms,
+          {{210ms, rest}, {220ms, "delivery"}, {330ms, "delivery"}, {430ms, "delivery"}, {480ms, "delivery"}},
+          conditions);
+  CHECK(told.answers == Texts{"ok\n201#0000000000000000\n", "ok\n2", "ok\n2", "ok\n2", "ok\n0"});
 }
 
 }  // namespace tool_clock_operate_told_test
