@@ -1,4 +1,4 @@
-// What of a log cannot be read, and where.
+// Which frames of a log count, and what of it cannot be read, and where.
 #include "cli/analyse/arrivals.hpp"
 
 #include <array>
@@ -6,6 +6,7 @@
 #include <fstream>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <catch2/catch.hpp>
 
@@ -51,6 +52,28 @@ TEST_CASE("arrivals: a place of a text is a line, and one of a binary log a byte
   CHECK_THAT(
       refused(cut),
       Catch::Contains(cut + ":byte 24: no frame of a log: ends in the middle: the beginning of a record\n"));
+}
+
+TEST_CASE("arrivals: what comes first says whose frames count, and they are put in the order of their times",
+          "[shared]") {
+  const test::TemporaryDirectory folder;
+  const auto log = read_arrivals(put(folder, "two.log",
+                                     "(1000000000.200000) can1 123#00\n"
+                                     "(1000000000.100000) can1 123#0102\n"
+                                     "(1000000000.100000) can1 124#02\n"  // not older than the one before
+                                     "(1000000000.150000) can0 123#03\n"
+                                     "(1000000000.160000) can1 20000004#0000000000000000\n"
+                                     "(1000000000.170000) can0 20000004#0000000000000000\n"),
+                                 amiro::catalogue);
+  REQUIRE(log.all.size() == 3);
+  CHECK(log.all[0].frame.data[0] == 1);
+  CHECK(log.all[0].length == 2);
+  CHECK(log.all[1].frame.id == 0x124);
+  CHECK(log.all[2].time - log.all[1].time == 100'000'000);
+  CHECK(log.errors == 1);
+  CHECK(log.remarks ==
+        std::vector<std::string>{"Only the frames of can1: 2 of other interfaces were passed over.",
+                                 "1 frame is older than the one before: sorted by time."});
 }
 
 }  // namespace tool_analyse_arrivals_test

@@ -37,6 +37,36 @@ TEST_CASE("meter: clocks may drift apart: the grid begins again every hundred fr
   CHECK(meter.finish().lateness == 99 * ms / 10);
 }
 
+TEST_CASE("meter: a grid counts for a hundred frames, be it the first one or one that begins later") {
+  Meter meter;
+  for (std::int64_t i = 0; i < 150; ++i) meter.add(i * 100 * ms, 8, ms, 100 * ms);
+  CHECK(meter.finish().lateness == 0);
+  meter.add(15'020 * ms, 8, ms, 100 * ms);  // 50 frames behind the beginning of the second grid
+  CHECK(meter.finish().lateness == 20 * ms);
+  // Behind a pause, of two clocks that drift apart.
+  Meter paused;
+  for (std::int64_t i = 0; i < 60; ++i) paused.add(i * 100 * ms, 8, ms, 100 * ms);
+  for (std::int64_t i = 0; i < 150; ++i) paused.add(7'000 * ms + i * 1001 * ms / 10, 8, ms, 100 * ms);
+  CHECK(paused.finish().lateness == 99 * ms / 10);
+}
+
+TEST_CASE("meter: a response is at least what a frame is late, and the shortest frame") {
+  Meter meter;
+  meter.add(0, 2, 3 * ms, 100 * ms);
+  const Measured one = meter.finish();
+  CHECK(one.count == 1);
+  CHECK(one.response == 3 * ms);
+  CHECK((one.shortest == 0 && one.longest == 0 && one.mean == 0));
+  meter.add(100 * ms, 8, 1 * ms, 100 * ms);
+  meter.add(220 * ms, 4, 2 * ms, 100 * ms);
+  const Measured three = meter.finish();
+  CHECK(three.response == 20 * ms + 1 * ms);
+  CHECK(three.greatest_length == 8);
+  CHECK(three.shortest == 100 * ms);
+  CHECK(three.mean == 110 * ms);
+  CHECK(three.longest == 120 * ms);
+}
+
 TEST_CASE("meter: a set point that is changed begins another grid") {
   CHECK(measured(Grid::of_run, {0, 100, 140, 240, 341}).lateness == 1 * ms);
   CHECK(measured(Grid::of_run, {0, 100, 230, 300}).lateness == 30 * ms);  // a late one shows all the same

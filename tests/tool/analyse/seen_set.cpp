@@ -29,6 +29,8 @@ const std::vector<std::uint8_t> six(6);
 
 /// Requests of the gyroscope and of the behaviour. [spec/topics.json: 0x08 and 0x0D]
 constexpr std::uint32_t of_gyroscope = 0x208, of_accelerometer = 0x209, of_behaviour = 0x20D;
+/// What its board refuses. [spec/topics.json: 0x1D]
+constexpr std::uint32_t of_refusals = 0x71D;
 
 BusSet seen(const std::vector<Sent>& frames, std::vector<Rate> given = {}) {
   Arrivals log;
@@ -77,6 +79,28 @@ TEST_CASE("seen set: of several periods the shortest counts, whenever it was ask
   CHECK(periods(set) == Periods{20 * ms});
   CHECK(set.remarks == Remarks{"gyroscope was asked for every 100ms and every 20ms: the shorter one counts.",
                                "gyroscope was asked for every 20ms and every 30ms: the shorter one counts."});
+}
+
+TEST_CASE("seen set: the newest requests that a refusal can be of were never asked", "[shared]") {
+  const std::vector<std::uint8_t> first{8, 15, 1, 0, 0, 0, 0, 0}, third{8, 15, 3, 0, 0, 0, 0, 0};
+  const auto period = [](std::vector<Sent> frames) {
+    frames.push_back({2000, 0x608, six});
+    const auto set = seen(frames);
+    const auto at = std::find_if(set.entries.begin(), set.entries.end(),
+                                 [](const BusEntry& entry) { return entry.name == "gyroscope"; });
+    REQUIRE(at != set.entries.end());
+    return at->period;
+  };
+  const Sent slow{0, of_gyroscope, {1, 100, 0, 0}}, faster{10, of_gyroscope, {1, 30, 0, 0}},
+      fastest{20, of_gyroscope, {1, 20, 0, 0}};
+  CHECK(period({slow, faster, fastest}) == 20 * ms);
+  CHECK(period({slow, faster, fastest, {30, of_refusals, first}}) == 30 * ms);
+  // Where refusals are published one comes 1.1 s behind its request, at most.
+  CHECK(period({slow, faster, fastest, {1120, of_refusals, first}}) == 30 * ms);
+  CHECK(period({slow, faster, fastest, {1121, of_refusals, first}}) == 20 * ms);
+  // Its count says how many there were since the one before.
+  CHECK(period({{-5, of_refusals, first}, slow, faster, fastest, {30, of_refusals, third}}) == 100 * ms);
+  CHECK(period({{-5, of_refusals, first}, faster, {30, of_refusals, third}}) == period({}));
 }
 
 TEST_CASE("seen set: who asks for no certain period has the topic's usual one", "[shared]") {

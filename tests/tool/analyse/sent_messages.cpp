@@ -109,6 +109,33 @@ TEST_CASE("sent messages: what is left out, and why", "[shared]") {
   CHECK(made(model).entry);
 }
 
+TEST_CASE(
+    "sent messages: what is sent as CAN FD has the next length that there is, and the switch unless it says "
+    "no",
+    "[shared]") {
+  const auto head = [](const spec::MessageModel& model) { return made(model).entry.value().head; };
+  const can::AnyFrame classic = head(message());
+  CHECK(classic.id == 0x101);
+  CHECK(classic.format == can::Format::base);
+  CHECK(classic.length == 8);
+  CHECK(classic.flags == 0);
+  auto model = message();
+  model.fd = true;
+  model.address = {protocol::Address::By::identifier, true, 0x18FF0102};
+  for (const auto& [bytes, length] : {std::pair{7U, 7}, std::pair{8U, 8}, std::pair{9U, 12},
+                                      std::pair{33U, 48}, std::pair{49U, 64}, std::pair{64U, 64}}) {
+    CAPTURE(bytes);
+    model.length = static_cast<std::uint16_t>(bytes);
+    CHECK(head(model).length == length);
+  }
+  CHECK(head(model).format == can::Format::extended);
+  CHECK(head(model).flags == can::fd_flags(true));
+  model.attributes.push_back({"CANFD_BRS", "1"});
+  CHECK(head(model).flags == can::fd_flags(true));
+  model.attributes.back().text = "0";
+  CHECK(head(model).flags == can::fd_flags(false));
+}
+
 TEST_CASE("sent messages: a start delay is an offset of what is on its sender's grid alone", "[shared]") {
   const auto offset = [](const char* delay, const char* type) {
     auto model = message(type);

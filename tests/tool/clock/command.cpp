@@ -270,6 +270,20 @@ TEST_CASE("drive: a stop beyond the end of its time is one, too") {
   }
 }
 
+TEST_CASE("drive: a stop within it counts from the last turn before") {
+  for (const Duration lasting : {430ms, 470ms}) {
+    World world{1};
+    PlayedBus bus{world, {}};
+    world.stop(World::start + 700ms, lasting);  // some 50 ms behind a turn
+    const Leaving left = leaving([&] { drive_to_its_end(bus, 2s); });
+    CAPTURE(lasting.count(), left.text);
+    CHECK(left.code.has_value() == (lasting > 450ms));
+    CHECK(cli::is_rest(bus.sent().back().frame));
+    if (left.code)
+      CHECK_THAT(left.text, Catch::Contains(", so the drive has ended; the motors were set to zero\n"));
+  }
+}
+
 TEST_CASE(
     "drive: set points for which the program was stopped are dropped, and the next keep their distance") {
   const Silence silence;
@@ -757,6 +771,22 @@ TEST_CASE("set: what was not sent is counted and said, with the reason") {
   CHECK(stuck(150ms, 1700ms) == five + cli::still_moving + "\n" + remedy);
 }
 
+TEST_CASE("drive: what ends it, a bus that is down or a queue that stays full, is said") {
+  const std::vector<PlayedBus::Time> from_then_on{{World::start + 150ms, World::start + 60s}};
+  const std::string moving = std::string{"; "} + cli::still_moving + "\n          ";
+  const std::string down = said_of(drive(1s), {.down = from_then_on});
+  CAPTURE(down);
+  CHECK_THAT(down, Catch::Contains("amiroctl: set: no set point has left can0 for "));
+  CHECK_THAT(down, Catch::EndsWith(": can0 is down" + moving + "bring it up\n"));
+  const std::string full = said_of(drive(1s), {.room = 1, .knows_delivery = false, .stuck = from_then_on});
+  CAPTURE(full);
+  CHECK_THAT(full, Catch::Contains(" set points were not sent, because the one before had not left\n"
+                                   "amiroctl: set: the transmit queue of can0 has been full for "));
+  CHECK_THAT(full, Catch::EndsWith(
+                       moving + "no node acknowledges the frames: is a board powered and connected, and is "
+                                "the bit rate the same?\n"));
+}
+
 TEST_CASE("set, drive: what is to last for a nanosecond is over with its first frame") {
   const Silence silence;
   const std::vector<std::string_view> words{"led", "1", "red"};
@@ -786,6 +816,30 @@ TEST_CASE("set, drive: what is to last for a nanosecond is over with its first f
   timeline.carry_out(*led);
   CHECK_FALSE(timeline.wait_for_end());
   CHECK(bus.sent().size() == 10);
+}
+
+TEST_CASE("run: a program that did not run for as long as a watchdog waits sends no further command") {
+  const std::vector<std::string_view> words{"led", "1", "red"};
+  const auto led = cli::words::CommandParser{amiro::catalogue}.parse_line(words);
+  REQUIRE(led.ok());
+  for (const Duration less : {0ns, 1ns}) {
+    CAPTURE(less.count());
+    World world{1};
+    PlayedBus bus{world, {}};
+    Timeline timeline{bus, amiro::catalogue, "run", Timeline::Others::allowed, cli::Confirm::no, {}};
+    const Moment before = cli::Clock::now();
+    const Duration look = cli::Clock::now() - before;  // what one takes
+    timeline.forgive_a_stop();
+    world.pass(watchdog - look - less);
+    const Leaving left = leaving([&] { timeline.carry_out_once(*led); });
+    const bool late = less == 0ns;
+    CHECK(left.code.has_value() == late);
+    CHECK(bus.sent().empty() == late);
+    if (late)
+      CHECK_THAT(left.text,
+                 Catch::Contains("amiroctl: run: this program did not run for 500ms, so no further "
+                                 "command is sent\n"));
+  }
 }
 
 TEST_CASE("drive: of a script whose program was stopped, whenever that was, one step at most is late") {

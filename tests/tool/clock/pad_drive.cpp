@@ -166,6 +166,24 @@ TEST_CASE(
   CHECK(std::count(drive.shown.begin(), drive.shown.end(), "rests: release the shoulder button first") == 2);
 }
 
+TEST_CASE("drive by gamepad: how fast it drives, or why it rests, is said whenever that changes") {
+  Drive drive;
+  drive.at(0s, drives);
+  drive.at(1s, let_go);
+  drive.at(2s, {.dead_man = true});
+  drive.at(3s, {.forward = 0.5, .left = -1, .dead_man = true});
+  drive.at(4s, drives);
+  drive.at(5s, {.forward = 1, .dead_man = true, .stop = true});
+  drive.at(6s, let_go);
+  drive.at(7s, {.quit = true});
+  CHECK(drive.go() == PadDrive::End::quit);
+  CHECK(drive.shown == std::vector<std::string>{"rests: release the shoulder button first",
+                                                "rests: hold a shoulder button to drive", "rests",
+                                                "5cm/s -45deg/s", "10cm/s 0deg/s",
+                                                "rests: release the shoulder button first",
+                                                "rests: hold a shoulder button to drive"});
+}
+
 TEST_CASE("drive by gamepad: a pad that is gone stops the robot") {
   Drive drive;
   drive.at(0s, let_go);
