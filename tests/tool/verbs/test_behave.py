@@ -134,7 +134,16 @@ class Behave(Case):
         self.settle()
         out, _ = self.interrupt(listener)
         asked = [line["fields"] for line in self.objects(out) if line["frame"] == "request"]
-        self.assertEqual({fields["period"] for fields in asked if fields["mode"] == "publish"}, {0.1})
+        # Once: while they come it asks no more.
+        self.assertEqual([fields["period"] for fields in asked if fields["mode"] == "publish"], [0.1])
+
+    def test_a_stream_of_reports_goes_on(self):
+        """Reports are heard before it begins, so it asks for none, and ends none."""
+        self.start_sim()
+        self.run_tool("publish", "behaviour", "40ms")
+        for force in ((), ("--force",)):
+            self.run_tool("behave", "follow", "--for", "100ms", *force)
+            self.run_tool("listen", "behaviour", "--count", "3", "--timeout", "20s")
 
     def test_a_set_point_ends_follow(self):
         self.start_sim()
@@ -196,6 +205,9 @@ class Behave(Case):
             self.assertIn("amiroctl: behave: power_management does not answer, so nothing shows that it has done it\n"
                           "          is it powered and on sim? ", err)
             self.assertNotIn("no set point", err)
+        # Not asked whether it is there: in so short a time it need not have commanded the motors.
+        _, err = self.run_tool("behave", "avoid", "--for", "100ms", "--no-confirm")
+        self.assertNotIn("nothing shows", err)
 
     def test_a_board_that_commands_no_motors_of_another_shows_nothing(self):
         """The motors are its own, or there are none: that no set point came says nothing of it."""

@@ -411,6 +411,15 @@ class InTime(Case):
         self.assertEqual(set(frames[:-1]), {"50C3000000000000"})
         self.assertIn(len(frames), (5, 6, 7))  # at 0, 100, ... 500 ms, and the zero; fewer only under load
 
+    def test_without_a_speed_steps_come_as_they_are_written(self):
+        self.start_sim()
+        listener = self.listen("--commands", "led", "--timeout", "20s")
+        self.run_tool("run", self.script("0s led 1 red\n300ms led 2 red\n"), "--no-confirm")
+        self.settle()
+        out, _ = self.interrupt(listener)
+        first, second = (int(frame["time_ns"]) for frame in self.objects(out))
+        self.assertAlmostEqual((second - first) / 1e9, 0.3, delta=0.1)
+
     def test_steps_come_at_their_times(self):
         self.start_sim()
         listener = self.listen("--commands", "led", "motors", "--timeout", "20s")
@@ -544,6 +553,17 @@ class Scripts(Case):
         shown += self.interrupt(run)[0].splitlines()
         topics = {line["topic"] for line in self.objects("\n".join(line.strip() for line in shown))}
         self.assertEqual(topics, {"gyroscope", "odometry"})
+
+    def test_a_script_ends_at_once_where_all_answers_are_shown(self):
+        """The reader of its output has a second for what waits, and nothing does."""
+        self.start_sim()
+        script = self.script("0s led 1 red\n")
+
+        def lasts():
+            begin = time.monotonic()
+            self.run_tool("run", script, "--show", "--no-confirm")
+            return time.monotonic() - begin
+        self.assertLess(min(lasts() for _ in range(3)), 1)
 
     def test_a_script_of_16_mib_and_one_byte_more(self):
         line, most = "0s led 1 red\n#", 16 << 20

@@ -209,6 +209,14 @@ class Doctor(Case):
         self.assertEqual(lines[-5:], ["warning  EngineControl: of 1 message due", "         in 30ms nothing came of Engine", "         is the sender switched on and",
                                       "         on this bus? `amiroctl stats`", "         measures every period"])
 
+    def test_rows_of_boards_and_batteries_go_on_below_them(self):
+        self.start_sim()
+        lines = self.on_a_terminal(40, "--no-color", "doctor", *QUICK)
+        for row, board in ((2, "di_wheel_drive"), (4, "power_management"), (6, "light_ring")):
+            self.assertRegex(lines[row], rf"^{board} +\d+ s +power$")
+            self.assertRegex(lines[row + 1], "^    same .* active   -$")
+        self.assertEqual(lines[8:11], ["battery 90 %", "battery_1 4.020 V, -0.116 A, 502 mAh", "    left, 25.1 degC"])
+
     def many(self):
         """A spec of six messages that a board sends every 10 ms."""
         path = os.path.join(self.folder, "many.dbc")

@@ -140,6 +140,12 @@ class Man(harness.Case):
                 pages[name] = file.read()
         return pages
 
+    def test_options_begin_where_those_of_help_do(self):
+        for words in ((), ("list",), ("pause",)):
+            page = rendered(self.run_tool("man", *words)[0])
+            behind_usage = self.run_tool(*words, "--help")[0].split("\n\n")[1]
+            self.assertEqual(page["OPTIONS"][0], behind_usage.splitlines()[0].strip())
+
     def test_options_of_inner_verbs(self):
         page = rendered(self.run_tool("man", "analyse")[0])
         self.assertTrue(any(line.startswith("--queue QUEUE") for line in page["OPTIONS OF analyse bus"]))

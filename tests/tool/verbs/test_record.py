@@ -234,6 +234,30 @@ class Recording(Case):
         server.close()
         self.assertGreaterEqual(len(self.ring("part_")), 5)
 
+    def test_a_simulator_that_takes_no_more_programs_is_no_quiet_bus(self):
+        """Behind --duration it is asked, unless as many frames have come as there should be. It is played."""
+        os.makedirs(self.path("ocm"), mode=0o700)
+        server = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        self.addCleanup(server.close)
+        server.bind(self.path("ocm/sim.sock"))
+        os.chmod(self.path("ocm/sim.sock"), 0o600)
+        server.listen()
+        server.settimeout(30)
+        for name, most in (("quiet.log", ("--duration", "100ms")), ("one.log", ("--duration", "60s", "-n", "1"))):
+            recorder = self.start("--bus", "sim", "record", "-o", self.path(name), *most)
+            node, _ = server.accept()
+            self.addCleanup(node.close)
+            node.send(struct.pack("<B3xIIII12s", HELLO, MAGIC, VERSION, 500_000, 64, b"sim"))
+            if name == "one.log":
+                node.send(struct.pack("<BBBxIq8s8x", FRAME, 0, 0, 0x123, time.time_ns(), b""))
+            else:
+                asks, _ = server.accept()
+                asks.recv(32)
+                asks.close()
+            _, err = recorder.communicate(timeout=60)
+            self.assertEqual(recorder.returncode, 0 if name == "one.log" else 1, err)
+        self.assertEqual(self.frames("one.log"), [("123", "")])
+
     def test_a_ring_is_a_budget_over_restarts(self):
         self.start_sim()
         for _ in range(4):

@@ -111,7 +111,7 @@ class OnARobotThatRefuses(WithAdapter, Case):
         """While it listens before its first step, or 100 ms before its drive."""
         for late in ("0s", "105ms", "120ms", "600ms"):
             bus = self.robot({})
-            self.run_tool(*bus, "run", self.script(f"{late} drive 5cm/s --for 100ms\n"), "--no-confirm")
+            self.run_tool(*bus, "run", self.script(f"{late} drive 5cm/s --for 100ms\n{late} led 1 red\n"), "--no-confirm")
             self.assertEqual(self.played.frames.count("20D#02"), 1, (late, self.played.frames))
             self.assertEqual(self.played.frames[-1], REST)
 

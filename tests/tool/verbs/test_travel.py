@@ -65,9 +65,10 @@ class Travel(Case):
     def test_a_stream_of_the_progress_goes_on(self):
         self.start_sim()
         self.run_tool("publish", "behaviour", "20ms")
-        self.run_tool("travel", "1cm")
-        out, _ = self.run_tool("listen", "behaviour", "--json", "--count", "3", "--timeout", "20s")
-        self.assertEqual([json.loads(line)["fields"]["ended"] for line in out.splitlines()], [ARRIVED] * 3)
+        for force in ((), ("--force",)):
+            self.run_tool("travel", "1cm", *force)
+            out, _ = self.run_tool("listen", "behaviour", "--json", "--count", "3", "--timeout", "20s")
+            self.assertEqual([json.loads(line)["fields"]["ended"] for line in out.splitlines()], [ARRIVED] * 3)
 
     def test_it_asks_for_twenty_reports_a_second(self):
         self.start_sim()
@@ -314,9 +315,14 @@ class Travel(Case):
         self.start_sim("--without", "di_wheel_drive")
         silent = ((self.falls_silent([]), "no behaviour within 1.2s, so the travel was ended\n          is board di_wheel_drive powered and on slcan:"),
                   (self.falls_silent(["t60D80100102700000000\r"]), "di_wheel_drive has been silent for 1.2s, so zeros were sent; THE ROBOT MAY STILL MOVE"))
+        listener = self.listen("behaviour", "--commands", "--timeout", "60s")
         begin = time.monotonic()
         _, err = self.run_tool("travel", "10cm", code=1)
         self.assertGreater(time.monotonic() - begin, 1.2)  # four times 300 ms, counted from each question
+        asked = []
+        while "stop" not in asked:
+            asked.append(json.loads(listener.stdout.readline())["fields"]["mode"])
+        self.assertEqual(asked.count("publish"), 4, asked)
         self.assertIn("no behaviour within 1.2s, so the travel was not begun", err)
         self.assertIn("di_wheel_drive", err)
         self.assertNotIn("has not answered", err)  # which says the same
