@@ -10,6 +10,7 @@
 #include "ocm/topics/amiro.hpp"
 
 #include "tests/tool/captured.hpp"
+#include "tests/tool/clock/world.hpp"
 
 namespace tool_clock_contradictions_test {
 
@@ -18,6 +19,7 @@ using cli::Contradictions;
 using cli::Seen;
 
 std::string said(const Contradictions& found, Seen where, std::string_view beginning = {}) {
+  const test::World world{1};  // a message asks whether a signal came
   test::Captured err{STDERR_FILENO};
   cli::tell_contradictions(found, amiro::catalogue, where, beginning);
   return err.text();

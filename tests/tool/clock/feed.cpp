@@ -108,9 +108,10 @@ TEST_CASE("log feed: a log out of order is as long as its last time, and one tha
   }
   const std::string cut = folder.put("b.log", lines(100));
   LogFeed feed{cut, {}, amiro::catalogue};
+  const auto none = [](const log::Entry&, const log::Interfaces&) {};
+  feed.go_to(29ms, none);  // what was played before is not counted with what is played again
   static_cast<void>(folder.put("b.log", lines(40)));
   feed.rewind();
-  const auto none = [](const log::Entry&, const log::Interfaces&) {};
   Captured err{STDERR_FILENO};
   feed.go_to(10ms, none);
   CHECK(feed.is_whole());

@@ -793,6 +793,55 @@ TEST_CASE("recorder: of several buses a frame that comes alone is written with t
   CHECK(*written - came < 300ms);
 }
 
+TEST_CASE("recorder: a frame that comes alone is on its way to the disk a tenth of a second later") {
+  const Silence silence;
+  const Folder folder;
+  World world{1};
+  std::optional<Moment> written;
+  world.disk = [&](int, std::string_view text) {
+    if (!text.empty() && !written) written = world.now();
+    return cli::Written{text.size(), 0};
+  };
+  record::Files files{to_one_file(folder), amiro::catalogue};
+  REQUIRE(files.open().ok());
+  // The disk is written to when the first second is over: it is to have been handed over by then.
+  const Moment came = World::start + 850ms;
+  std::vector<std::vector<Beside::Frame>> buses(1);
+  buses[0].push_back({came, came});
+  record::Limits limits;
+  limits.duration = 5s;
+  record::Recorder recorder{ports_beside(world, buses), never_back, files, limits, false};
+  world.beside = [&recorder] { static_cast<void>(recorder.writing().step(0ms)); };
+  recorder.receive();
+  world.beside = nullptr;
+  while (recorder.writing().step(0ms)) world.pass(1ms);
+  CHECK(recorder.received() == 1);
+  REQUIRE(written.has_value());
+  CHECK(*written - came < 500ms);
+}
+
+TEST_CASE("recorder: all that waits at the end is fetched, with as many looks as that takes") {
+  const Silence silence;
+  const Folder folder;
+  for (const std::size_t count : {std::size_t{1}, std::size_t{2}}) {
+    CAPTURE(count);
+    folder.empty();
+    World world{1};
+    std::vector<std::vector<Beside::Frame>> buses(count);
+    const Moment readable = World::start + 999ms;
+    for (auto& bus : buses)
+      for (int i = 5000; i > 0; --i) bus.push_back({readable - i * 10us, readable});
+    record::Files files{to_one_file(folder), amiro::catalogue};
+    REQUIRE(files.open().ok());
+    record::Limits limits;
+    limits.duration = 1s;
+    record::Recorder recorder{ports_beside(world, buses), never_back, files, limits, false};
+    recorder.receive();
+    while (recorder.writing().step(0ms)) world.pass(1ms);
+    CHECK(recorder.received() == count * 5000);
+  }
+}
+
 TEST_CASE(
     "recorder: what waits on several buses is in the order of its times, however often much of it waits") {
   const Silence silence;

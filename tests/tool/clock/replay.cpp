@@ -672,6 +672,36 @@ TEST_CASE("replay: a bus is looked at until two milliseconds before a frame is d
   }
 }
 
+TEST_CASE("replay: in a pause of the log the bus is looked at five times a second") {
+  const Silence silence;
+  World world{1};
+  std::size_t steps = 0;  // of the time; some of them are of one look
+  world.beside = [&steps] { ++steps; };
+  OnOneBus<PlayedLog> replayed{world, PlayedBus::Conditions{}, sensors_at({0s, 10s}), std::size_t{1}};
+  replayed.play();
+  CHECK(replayed.sent().size() == 2);
+  CHECK(steps >= 50);
+  CHECK(steps < 1000);
+}
+
+TEST_CASE("replay: a travel that a log has begun is named and ended, once") {
+  const Silence silence;
+  World world{1};
+  const std::vector<log::Entry> entries{{base::Time{0s}, travels, std::uint16_t{0}},
+                                        {base::Time{10ms}, can::Frame{0x601, 4, {1}}, std::uint16_t{0}}};
+  OnOneBus<PlayedLog> replayed{world, PlayedBus::Conditions{}, entries, std::size_t{1}};
+  replayed.play();
+  auto& player = *replayed.player;
+  CHECK(player.end_behaviours() == std::vector<std::string>{"travel was"});
+  REQUIRE(replayed.sent().size() == 3);
+  CHECK(replayed.sent()[2].frame.id == travels.id);
+  CHECK(cli::is_rest(replayed.sent()[2].frame));
+  CHECK(player.end_behaviours().empty());
+  CHECK(player.end_after_all().empty());
+  CHECK_FALSE(player.rest());
+  CHECK(replayed.sent().size() == 3);
+}
+
 TEST_CASE("replay: what stderr did not take is written in a pause of the log") {
   World world{1};
   const PipedStderr pipe;

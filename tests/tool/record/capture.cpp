@@ -27,6 +27,7 @@ struct Waiting {
   int flags = 0;
   timespec time{};
   std::uint32_t drops = 0;  ///< before it
+  int level = SOL_SOCKET;   ///< of what is said of it
 
   void hand_out(mmsghdr& message) const {
     msghdr& header = message.msg_hdr;
@@ -37,7 +38,7 @@ struct Waiting {
     std::memset(header.msg_control, 0, header.msg_controllen);
     cmsghdr* item = CMSG_FIRSTHDR(&header);
     const auto put = [&](int type, const auto& value) {
-      item->cmsg_level = SOL_SOCKET;
+      item->cmsg_level = level;
       item->cmsg_type = type;
       item->cmsg_len = CMSG_LEN(sizeof value);
       std::memcpy(CMSG_DATA(item), &value, sizeof value);
@@ -284,6 +285,24 @@ TEST_CASE("the code of a length above eight is kept of a classic frame of eight 
     CHECK(entries[0].format == row.format);
     CHECK(entries[0].length == row.length);
     CHECK(entries[0].raw_dlc == row.kept);
+  }
+}
+
+TEST_CASE("what is said of a frame at another level than the socket's is neither a time nor a loss") {
+  for (const int level : {SOL_SOCKET, SOL_CAN_RAW}) {
+    CAPTURE(level);
+    Scene scene;
+    Waiting waiting;
+    waiting.time = {1'700'000'000, 5};
+    waiting.drops = 7;
+    waiting.level = level;
+    scene.played.queue = {waiting};
+    std::array<log::Entry, Capture::batch> entries;
+    REQUIRE(scene.capture->read(entries, 0) == 1);
+    const bool ours = level == SOL_SOCKET;
+    CHECK(entries[0].time.time_since_epoch() ==
+          std::chrono::nanoseconds{ours ? 1'700'000'000'000'000'005 : 0});
+    CHECK(scene.capture->lost() == (ours ? 7U : 0U));
   }
 }
 
