@@ -55,7 +55,7 @@ TEST_CASE("explanation: a time is in the largest unit of which there is one", "[
   CHECK(time_text(-1'500) == "-1.5us");
 }
 
-TEST_CASE("explanation: a load is told to a millionth where 63 bits hold no fraction of it", "[shared]") {
+TEST_CASE("explanation: a load is said to a millionth where 63 bits hold no fraction of it", "[shared]") {
   Study study;
   study.load.add(1, 4);
   CHECK(study.utilisation() == 0.25);

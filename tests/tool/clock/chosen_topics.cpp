@@ -37,7 +37,7 @@ std::string ask(const std::string& name) {
   return "a sensor is silent until it is asked, as by `amiroctl publish " + name + " 500ms`\n";
 }
 
-TEST_CASE("chosen topics: the first sensor that is silent until it is asked is told, and no other topic") {
+TEST_CASE("chosen topics: of sensors that are silent until they are asked the first is named, and no other topic") {
   CHECK(told({}) == ask("odometry"));  // of all
   CHECK(told({"gyroscope"}) == ask("gyroscope"));
   CHECK(told({"gyroscope", "accelerometer"}) == ask("gyroscope"));
@@ -51,7 +51,7 @@ TEST_CASE("chosen topics: the first sensor that is silent until it is asked is t
   CHECK(told({"di_wheel_drive_refusal", "di_wheel_drive_status", "gyroscope"}) == ask("gyroscope"));
 }
 
-TEST_CASE("chosen topics: where a spec has no sensor nothing is told") {
+TEST_CASE("chosen topics: where a spec has no sensor nothing is said") {
   const protocol::Catalogue none{"car", 500'000, {}, {}};
   const test::World world{1};
   test::Captured err{STDERR_FILENO};

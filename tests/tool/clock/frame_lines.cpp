@@ -107,7 +107,7 @@ TEST_CASE("frame lines: a signal ends the reading, which is no failure of the in
   }
 }
 
-TEST_CASE("frame lines: the first bad line ends it, or each is counted and the first of them are told") {
+TEST_CASE("frame lines: the first bad line ends it, or each is counted, and the first of them are named") {
   const World world{1};
   std::string text = "123#11\n";
   const auto told = static_cast<std::size_t>(log::Complaints::kept);
