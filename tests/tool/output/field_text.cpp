@@ -159,6 +159,11 @@ TEST_CASE("values of 16 digits and more are printed exactly", "[output]") {
   }
 }
 
+TEST_CASE("a value has up to 39 digits behind the point, and is a float beyond them", "[output]") {
+  CHECK(printed(field_of(64, false, {1, -39}), payload(1)) == "0." + std::string(38, '0') + "1");
+  CHECK_THAT(printed(field_of(64, false, {1, -40}), payload(1)), Catch::Contains("e-"));
+}
+
 TEST_CASE("zeros at the end of a value say nothing, however many they are", "[output]") {
   for (std::uint64_t digit = 1; digit <= 9; ++digit) {
     std::uint64_t number = digit;

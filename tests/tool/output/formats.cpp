@@ -6,12 +6,14 @@
 #include <vector>
 
 #include <catch2/catch.hpp>
+#include <fmt/format.h>
 
 #include "ocm/can/text.hpp"
 #include "ocm/topics/amiro.hpp"
 
 #include "cli/output/output.hpp"
 #include "cli/shared/folding.hpp"
+#include "tests/tool/output/rooms.hpp"
 
 namespace tool_output_formats_test {
 
@@ -60,6 +62,55 @@ TEST_CASE("CSV of chosen fields has a column each", "[output]") {
         "1436509052.250713000,0.2,,\n");
 }
 
+TEST_CASE("CSV lines are written to where there is room for them, whatever their names and units are",
+          "[output]") {
+  const std::string name(600, 'n'), unit(600, 'u');
+  std::array<protocol::Field, 2> of_first;
+  for (std::size_t i = 0; i < of_first.size(); ++i) {
+    of_first[i].name = i == 0 ? std::string_view{"a"} : std::string_view{name};
+    of_first[i].position = {static_cast<std::uint16_t>(8 * i), 8, protocol::ByteOrder::little};
+    of_first[i].unit = unit;
+    of_first[i].raw_max = 255;
+  }
+  std::vector<std::string> names;
+  for (int i = 0; i < 150; ++i) names.push_back(fmt::format("b{}", i));
+  std::vector<protocol::Field> of_second(names.size(), of_first[0]);
+  for (std::size_t i = 0; i < names.size(); ++i) of_second[i].name = names[i];
+  std::array<protocol::FrameLayout, 2> layouts;
+  std::array<protocol::Topic, 2> topics;
+  for (std::size_t i = 0; i < topics.size(); ++i) {
+    layouts[i].length = 2;
+    layouts[i].address = {protocol::Address::By::identifier, false, 0x123 + static_cast<std::uint32_t>(i)};
+    topics[i].name = i == 0 ? "First" : "Second";
+    topics[i].kind = protocol::Kind::message;
+    topics[i].board = protocol::no_board;
+    topics[i].frames = {&layouts[i], 1};
+  }
+  layouts[0].fields = of_first;
+  layouts[1].fields = of_second;
+  protocol::Catalogue catalogue;
+  catalogue.topics = topics;
+  const log::Entry entry{base::Time{base::Duration{1'436'509'052'249'713'000}},
+                         *can::parse_frame("123#0305")};
+  client::Receiver receiver{catalogue};
+  const client::Reception reception = cli::understand(receiver, entry);
+  const auto check = [&](const cli::Selection& choice, const std::string& lines, std::size_t step) {
+    const auto output = cli::make_csv(catalogue, choice);
+    log::Bytes out;
+    output->write(out, {"can0", entry, reception});
+    CHECK((out.view() == lines));
+    test::check_room([&](log::Bytes& to) { output->write(to, {"can0", entry, reception}); }, step);
+  };
+  check(
+      {},
+      "1436509052.249713000,First,a,3," + unit + "\n1436509052.249713000,First," + name + ",5," + unit + "\n",
+      17);
+  const std::vector<std::string> words{"First.a", "Second"};
+  const auto chosen = cli::Selection::of(catalogue, words);
+  REQUIRE(chosen);
+  check(*chosen, "1436509052.249713000,3" + std::string(names.size(), ',') + "\n", 1);
+}
+
 TEST_CASE("pretty lines are for a person", "[output]") {
   const std::string text = shown(cli::make_pretty(amiro::catalogue, {}, false), frames);
   CHECK(
@@ -72,6 +123,7 @@ TEST_CASE("pretty lines are for a person", "[output]") {
   CHECK(text.find("plugged|charging") != std::string::npos);
   CAPTURE(text);
   CHECK(std::count(text.begin(), text.end(), '\n') == 6);  // the odometry's two frames are one sample
+  CHECK(text.find(" velocity.x ") != std::string::npos);   // a field of several frames has its frame's name
   const std::string chosen = shown(cli::make_pretty(amiro::catalogue, selection({"gyro.y"}), false), frames);
   CHECK(std::count(chosen.begin(), chosen.end(), '\n') == 1);
   CHECK(chosen.find("y   -0.0175 deg/s") != std::string::npos);

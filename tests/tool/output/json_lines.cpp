@@ -169,6 +169,19 @@ TEST_CASE("JSON lines: the first and the last character of each length of UTF-8,
   CHECK(inside("\\xg4") == R"(\\xg4)");
 }
 
+TEST_CASE("JSON lines: samples and requests of each priority are those of their topic", "[output]") {
+  const std::vector<std::string> priorities{"urgent", "high", "medium", "low"};
+  for (std::size_t level = 0; level < priorities.size(); ++level) {
+    const std::string sample = fmt::format("{}08", 4 + level), request = fmt::format("{}08", level);
+    CHECK(has(line_of(entry_of(sample + "#0300FFFF0000")),
+              fmt::format(R"("id":"{}","priority":"{}","topic":"gyroscope","frame":"gyroscope","fields":)",
+                          sample, priorities[level])));
+    CHECK(has(line_of(entry_of(request + "#02")),
+              fmt::format(R"("id":"{}","priority":"{}","topic":"gyroscope","frame":"request","fields":)",
+                          request, priorities[level])));
+  }
+}
+
 TEST_CASE("JSON lines: values that have names have them beside the numbers", "[output]") {
   // The power's flags are plugged and charging, and 65535 of its minutes is "unknown". [spec/topics.json]
   CHECK(has(line_of(entry_of("61E#03640AFF0A00")), R"("names":{"flags":"plugged|charging"},"data":"03)"));

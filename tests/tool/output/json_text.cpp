@@ -17,6 +17,8 @@
 #include "ocm/log/bytes.hpp"
 #include "ocm/protocol/topic.hpp"
 
+#include "tests/tool/output/rooms.hpp"
+
 namespace tool_output_json_text_test {
 
 using namespace ocm;
@@ -223,15 +225,6 @@ TEST_CASE(
                                     fd);
 }
 
-/// How many bytes there is room for in a run that was empty.
-std::size_t room_of_a_new_run() {
-  log::Bytes bytes;
-  const char* const first = bytes.room(1);
-  std::size_t room = 1;
-  while (bytes.room(room + 1) == first) ++room;
-  return room;
-}
-
 TEST_CASE("JSON text: a line is written to where there is room for it, however little is left", "[output]") {
   const Message message{{field("a", 0, 8), field("b", 8, 56)}};
   cli::JsonText text{message.catalogue()};
@@ -248,18 +241,128 @@ TEST_CASE("JSON text: a line is written to where there is room for it, however l
   entries[5].length = log::max_fd_length;
   entries[5].direction = log::Direction::received;
   entries[5].data.fill(0xA5);
-  const std::size_t room = room_of_a_new_run();
   for (const log::Entry& entry : entries) {
-    const std::string line = line_of(text, entry);
-    REQUIRE(line.ends_with("}\n"));
-    for (std::size_t left = 0; left < line.size() + 64; ++left) {
-      log::Bytes out;
-      out.zeros(room - left);
-      const char* const before = out.view().data();
-      text.write(out, "can0", entry);
-      CAPTURE(line, left);
-      REQUIRE((out.size() <= room || out.view().data() != before));
-      REQUIRE(out.view().substr(room - left) == line);
+    CHECK(line_of(text, entry).ends_with("}\n"));
+    test::check_room([&](log::Bytes& out) { text.write(out, "can0", entry); });
+  }
+}
+
+TEST_CASE("JSON text: of J1939, too, a line is written to where there is room for it", "[output]") {
+  const Message message{
+      {field("Near", 0, 8), field("Far", 72, 8)}, {protocol::Address::By::pgn, true, 0x18FE'EC00}, 10};
+  cli::JsonText text{message.catalogue()};
+  std::array<std::uint8_t, 18> bytes{1};  // behind a message eight may be read
+  bytes[9] = 7;
+  // What takes the most digits.
+  log::Entry packet;
+  packet.time = base::Time{base::Duration{std::numeric_limits<std::int64_t>::min()}};
+  packet.id = 0x1FEB'FFFE;
+  packet.format = can::Format::extended;
+  packet.length = 8;
+  packet.direction = log::Direction::received;
+  j1939::Transported whole;
+  whole.id = {7, 0x3'FEEC, 255, 254};
+  whole.data = std::span{bytes}.first(10);
+  client::Reception known, unknown, alone;
+  known.topic = &message.catalogue().topics[0];
+  known.transported = unknown.transported = &whole;
+  for (const client::Reception& reception : {known, unknown, alone})
+    test::check_room([&](log::Bytes& out) { text.write_transport(out, "can0", packet, reception); });
+  for (const std::uint32_t id : {0x1FFF'FEFEU, 0x1CFE'ECFEU}) {  // of no message, and of one frame
+    packet.id = id;
+    test::check_room([&](log::Bytes& out) { text.write(out, "can0", packet); });
+  }
+}
+
+TEST_CASE("JSON text: there is room for names and units, however long they are", "[output]") {
+  static constexpr std::array<protocol::SelectorRange, 1> one{{{1, 1}}};
+  const std::string name(600, 'n'), unit(600, 'u');
+  const std::array<std::string, 3> names{name + "a", name + "b", name + "c"};
+  std::string values, units;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const std::string key = (i == 0 ? "\"" : ",\"") + names[i] + "\":";
+    values += key + std::to_string(i + 1);
+    units += key + '"' + unit + '"';
+  }
+  for (const bool paged : {false, true}) {
+    CAPTURE(paged);
+    std::vector<Field> fields{field(names[0], 0, 8), field(names[1], 8, 8), field(names[2], 16, 8)};
+    for (Field& each : fields) each.unit = unit;
+    if (paged) {
+      fields[2].selector = 0;
+      fields[2].selected = one;
+    }
+    const Message message{fields};
+    cli::JsonText text{message.catalogue()};
+    const log::Entry entry = entry_of(0x03'02'01);
+    const std::string line =
+        R"({"time_ns":"0","bus":"can0","id":"123","topic":"Message","frame":"Message","fields":{)" + values +
+        R"(},"units":{)" + units + R"(},"data":"0102030000000000"})" + "\n";
+    CHECK((line_of(text, entry) == line));
+    test::check_room([&](log::Bytes& out) { text.write(out, "can0", entry); }, 61);
+  }
+}
+
+TEST_CASE("JSON text: of a choice, what has none of its fields is no line, and that is said", "[output]") {
+  static constexpr std::array<protocol::SelectorRange, 1> one{{{1, 1}}};
+  std::vector<Field> fields{field("page", 0, 8), field("a", 8, 8), field("b", 16, 8)};
+  fields[2].selector = 0;
+  fields[2].selected = one;
+  const Message message{fields};
+  const auto shown = [&message](const std::string& word, const log::Entry& entry) {
+    const std::vector<std::string> words{word};
+    const auto choice = cli::Selection::of(message.catalogue(), words);
+    REQUIRE(choice);
+    cli::JsonText text{message.catalogue(), *choice};
+    log::Bytes out;
+    const bool any = text.write(out, "can0", entry);
+    CHECK(any == !out.view().empty());
+    return std::string{out.view()};
+  };
+  using Catch::Contains;
+  CHECK_THAT(shown("Message.b", entry_of(0x09'07'01)), Contains(R"("fields":{"b":9},"units":{"b":""})"));
+  CHECK(shown("Message.b", entry_of(0x09'07'02)).empty());
+  CHECK_THAT(shown("Message.a", entry_of(0x09'07'02)), Contains(R"("fields":{"a":7},"units":{"a":""})"));
+  for (const std::string word : {"Message.a", "Message.b"}) {
+    log::Entry entry = entry_of(0x09'07'01);
+    entry.id = 0x124;  // of no message
+    CHECK(shown(word, entry).empty());
+    entry.id = 0x123;
+    entry.length = 7;  // too short
+    CHECK(shown(word, entry).empty());
+    entry.length = 8;
+    entry.format = can::Format::base_remote;
+    CHECK(shown(word, entry).empty());
+  }
+}
+
+TEST_CASE("JSON text: on an interface what another one has is unknown", "[output]") {
+  constexpr std::array<std::string_view, 3> names{"Here", "There", "Anywhere"}, buses{"can0", "can1", ""};
+  for (const bool wide : {false, true}) {
+    const std::array<Field, 1> fields{field("a", 0, 8)};
+    std::array<protocol::FrameLayout, 3> layouts;
+    std::array<protocol::Topic, 3> topics;
+    for (std::size_t i = 0; i < topics.size(); ++i) {
+      layouts[i].length = 1;
+      layouts[i].fields = fields;
+      layouts[i].address = {protocol::Address::By::identifier, wide, 0x100 + static_cast<std::uint32_t>(i)};
+      topics[i].name = names[i];
+      topics[i].kind = protocol::Kind::message;
+      topics[i].board = protocol::no_board;
+      topics[i].frames = {&layouts[i], 1};
+      topics[i].bus = buses[i];
+    }
+    const protocol::Catalogue catalogue{"car", 250'000, {}, topics};
+    cli::JsonText all{catalogue}, here{catalogue, {}, "can0"};
+    log::Entry entry = entry_of(5);
+    entry.format = wide ? can::Format::extended : can::Format::base;
+    for (std::size_t i = 0; i < topics.size(); ++i) {
+      entry.id = 0x100 + static_cast<std::uint32_t>(i);
+      const std::string known = R"("topic":")" + std::string{names[i]} + R"(","frame":")" +
+                                std::string{names[i]} + R"(","fields":{"a":5})";
+      CHECK_THAT(line_of(all, entry), Catch::Contains(known));
+      CHECK_THAT(line_of(here, entry),
+                 Catch::Contains(i == 1 ? std::string{R"("error":"unknown identifier")"} : known));
     }
   }
 }
@@ -287,16 +390,7 @@ TEST_CASE("JSON text: there is room for names of values, be some very short and 
   const std::string line = line_of(text, entry);
   CHECK_THAT(line, Catch::Contains(R"("names":{"a":")" + together_name + R"(","b":")" + apart_name +
                                    R"(","c":")" + of_all_bits + R"("},"data":)"));
-  const std::size_t room = room_of_a_new_run();
-  for (std::size_t left = 0; left < line.size() + 64; left += 61) {
-    log::Bytes out;
-    out.zeros(room - left);
-    const char* const before = out.view().data();
-    text.write(out, "can0", entry);
-    CAPTURE(left);
-    REQUIRE((out.size() <= room || out.view().data() != before));
-    REQUIRE((out.view().substr(room - left) == line));
-  }
+  test::check_room([&](log::Bytes& out) { text.write(out, "can0", entry); }, 61);
 }
 
 TEST_CASE("JSON text: of J1939's transport protocol a choice shows what completes a message with its field",

@@ -39,6 +39,7 @@ TEST_CASE("a line is broken at blanks, and only where it does not fit", "[foldin
 TEST_CASE("a help's descriptions stay below each other where there is room", "[folding]") {
   const std::string line = "  --json                      an object, for programs that read it";
   CHECK(folded_help(line, 200) == line);
+  CHECK(folded_help("  --json  an object", 19) == "  --json  an object");  // it just fits
   CHECK(folded_help(line, 56) ==
         "  --json                      an object, for programs\n"
         "                              that read it");

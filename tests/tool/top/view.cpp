@@ -574,6 +574,22 @@ TEST_CASE("top: a list that is longer than the screen follows the cursor") {
   CHECK(robot.names().front() == "scale");
 }
 
+TEST_CASE("top: a list that was empty begins again, and goes as far as the cursor is in sight") {
+  Robot robot;
+  for (std::uint32_t id = 0x740; id < 0x780; ++id) robot.model().take(entry(1990ms, id, {1}));
+  robot.draw();
+  robot.view.press(Key{Kind::end});
+  robot.draw();
+  robot.view.press(Key{Kind::page_up});
+  CHECK(robot.names().front() == "76D");  // the cursor is there
+  for (const char* text : {"/", "q"}) robot.view.press(letter(text));
+  CHECK(robot.names() == Names{"no"});  // no name has these letters
+  robot.view.press(Key{Kind::escape});
+  const Names names = robot.names();
+  CHECK(names.front() == "75B");
+  CHECK(names.back() == "76D");
+}
+
 TEST_CASE("top: topics that were asked for, and all of the spec") {
   Robot robot;
   robot.view.press(letter("a"));
