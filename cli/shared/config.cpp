@@ -20,6 +20,7 @@
 #include "cli/shared/config_check.hpp"
 #include "cli/shared/config_file.hpp"
 #include "cli/shared/messages.hpp"
+#include "cli/shared/option_value.hpp"
 #include "cli/words/suggestion.hpp"
 
 namespace ocm::cli {
@@ -68,8 +69,9 @@ void apply_environment(Verb verb) {
           fail({fmt::format("{}={}", name, misuse->what), misuse->remedy + ", or unset it"}, exit_usage);
         break;
       }
+      // `refuse` gives the value to the option, to have its words; what is not for it must not reach it.
+      if (may_be_another && refuse_text(option.accepted(), value)) break;
       const auto refusal = refuse(option, std::string{value});
-      if (refusal && may_be_another) break;
       if (refusal) fail({fmt::format("{}={}", name, refusal->what), refusal->remedy}, exit_usage);
       if (const auto misuse = option.give(key, {value}); misuse && !may_be_another)
         fail({fmt::format("{}={}", name, misuse->what), misuse->remedy + ", or unset it"}, exit_usage);
