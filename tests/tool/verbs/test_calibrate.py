@@ -47,30 +47,38 @@ class Played(Case):
         self.avr.finds = [(2, 41, -57, 152, 1, 1)]
         out, err = self.calibrate(code=1)
         self.assertEqual(out, GOOD.replace("stored", "not stored"))
-        self.assertIn("AVR has not stored it: it is lost when the robot is switched off", err)
+        self.assertEqual(err, "calibrate: AVR has not stored it: it is lost when the robot is switched off\n"
+                              "check the robot's memory, and calibrate it again\n")
 
     def test_each_end_that_is_not_good(self):
+        elsewhere = "calibrate it in another place, away from steel, motors and cables with current"
         for finds, said, remedy in (
-                ((3, 41, -57, 152, 6, 2), "AVR may be wrong by 6 deg", "in another place"),
-                ((4, 0, 0, 0, 0, 0), "AVR was stopped before it had turned around; its compass corrects nothing", "again"),
-                ((5, 0, 0, 0, 0, 0), "AVR has not seen itself turn around", "free to turn"),
+                ((3, 41, -57, 152, 6, 2), "AVR may be wrong by 6 deg; a robot that has a good calibration keeps that", elsewhere),
+                ((4, 0, 0, 0, 0, 0), "AVR was stopped before it had turned around; its compass corrects nothing", "calibrate it again"),
+                ((5, 0, 0, 0, 0, 0), "AVR has not seen itself turn around; its compass corrects nothing",
+                 "is it free to turn, and does its gyroscope answer?"),
                 ((6, 41, -57, 152, 30, 2), "the field changed while AVR turned: its compass would be wrong by 30 deg; it keeps "
-                 "the calibration that it had", "in another place"),
-                ((7, 0, 0, 20, 0, 0), "the field around AVR is too weak, 20 mG", "in another place"),
-                ((8, 0, 0, 0, 0, 0), "the compass of AVR does not answer", "cable")):
+                 "the calibration that it had", elsewhere),
+                ((7, 0, 0, 20, 0, 0), "the field around AVR is too weak, 20 mG; its compass corrects nothing", elsewhere),
+                ((8, 0, 0, 0, 0, 0), "the compass of AVR does not answer; its compass corrects nothing", "check the part and its cable")):
             self.avr.finds = [finds]
             self.avr.turn_s = 0.2
             out, err = self.calibrate(code=1)
             self.assertEqual(out, "" if finds[0] != 3 else
                              "AVR: poor: within 6 deg; field of the robot x 41 mG, y -57 mG, of the earth 152 mG; stored\n")
-            self.assertIn(said, err)
-            self.assertIn(remedy, err)
+            self.assertEqual(err, f"calibrate: {said}\n{remedy}\n")
 
     def test_never_calibrated(self):
         out, err = self.calibrate("--show", code=1)
-        self.assertEqual(out, "")
-        self.assertIn("AVR was never calibrated", err)
+        self.assertEqual((out, err), ("", "calibrate: AVR was never calibrated\ndrop --show: it turns around once\n"))
         self.assertEqual(self.avr.calibration, 0)
+
+    def test_one_that_turns_for_another_program_goes_on(self):
+        self.avr.calibration, self.avr.turning_until = 3, time.monotonic() + 1000
+        self.assertEqual(self.calibrate("--show", code=1), ("", "calibrate: AVR turns around now, for another program\n"
+                                                                "ask again in a minute\n"))
+        self.assertIsNotNone(self.avr.turning_until)
+        self.assertNotIn("{U,0,0}", self.avr.heard)
 
     def test_a_robot_whose_program_does_not_know_the_sentence(self):
         self.avr.knows_compass = False
@@ -85,6 +93,8 @@ class Played(Case):
         self.run_tool("pause", "AVR", "--scan", "200ms")
         self.assertEqual(self.calibrate(), (GOOD, ""))
         self.assertTrue(self.avr.paused)
+        # It is asked behind each pause what it does, so that no more are said than it needs.
+        self.assertNotIn(("{S,PAU}", "{S,PAU}"), list(zip(self.avr.heard, self.avr.heard[1:])))
 
     def test_a_paused_robot_is_paused_again_however_it_ends(self):
         self.run_tool("pause", "AVR", "--scan", "200ms")
@@ -99,8 +109,11 @@ class Played(Case):
 
     def test_one_that_does_not_come_to_an_end_is_stopped(self):
         self.avr.turn_s = 1000
+        began = time.monotonic()
         out, err = self.calibrate("--timeout", "2s", code=1)
-        self.assertIn("AVR has not said how it ended after 2s; it was stopped", err)
+        self.assertLess(time.monotonic() - began, 10)  # in which one that does not answer is asked
+        self.assertEqual(err, "amiroctl: calibrate: AVR has not said how it ended after 2s; it was stopped\n"
+                              "          give it more time: --timeout 180s\n")
         self.assertEqual((out, self.avr.turning_until), ("", None))
         self.assertIn("{U,0,0}", self.avr.heard)
 

@@ -227,7 +227,7 @@ class OnSerialLines(Case):
             talk.type("list\n")
             return "0:020000000000:AVR" in talk.said
         waiting.until(listed, "it is listed", 60)
-        self.assertIn(f"no {link} yet; AVR is looked for", talk.end())
+        self.assertIn(f"no {link} yet; AVR is looked for while the central scans\n", talk.end())
 
     def test_garbage_and_all_bytes(self):
         robot = self.robot()

@@ -253,6 +253,30 @@ class Doctor(Case):
         self.run_tool("--spec", spec, "listen", "Long", "-n", "1", "--timeout", "60s", timeout=90)  # it sends
         out, _ = self.run_tool("--spec", spec, "doctor", "--listen", "500ms", "--json")
         self.assertEqual(self.what(json.loads(out)), [])
+        for _ in range(50):  # on a busy machine it may not come in so short a time
+            out, _ = self.run_tool("--spec", spec, "doctor", "--listen", "29ms")  # it is due three times in 30 ms
+            if "nothing came" not in out:
+                break
+        self.assertEqual(out.splitlines()[-1], "no message was due meanwhile: --listen T listens longer; of the boards this spec says nothing")
+        for _ in range(20):
+            process = self.start("--spec", spec, "doctor", "--listen", "200ms")
+            out, _ = process.communicate(timeout=60)
+            if process.returncode == 0:
+                break
+        self.assertEqual(out.splitlines()[-1], "all messages came that were due; of the boards this spec says nothing")
+
+    def test_a_board_that_sends_and_does_not_say_how_it_is(self):
+        self.start_sim("--without", "di_wheel_drive,power_management,light_ring")
+        for _ in range(20):  # on a busy machine the frame may come too late
+            doctor = self.start("doctor", "--listen", "300ms", "--patience", "1ms")
+            self.assertIn("bus: sim", doctor.stderr.readline())
+            self.run_tool("send", "608#000000000000")
+            out, _ = doctor.communicate(timeout=60)
+            self.assertEqual(doctor.returncode, 1)
+            if "no board answers" not in out:
+                break
+        self.assertEqual(out.splitlines()[1:4], ["di_wheel_drive    sends, but has no status", "power_management  -", "light_ring        -"])
+        self.assertIn("warning  di_wheel_drive: sends, and does not say how it is\n         it runs a firmware without a status; flash the present one\n", out)
 
     def test_ctrl_c_ends_it(self):
         self.start_sim()

@@ -157,7 +157,7 @@ class Goto(Line):
         out, err = self.tool("goto", "AVR", "90", "25", "--timeout", "3s", code=1)
         self.assertEqual(out, "")
         self.assertRegex(err, r"AVR has not heard it after 3s \(said \d+ times; 100 % of its sentences come whole\); "
-                              "it was stopped")
+                              "it was stopped\n          bring the central nearer, or give it more time: --timeout 120s\n")
         self.assertNotIn("in front of it", err)
 
     def test_a_robot_that_does_not_say_where_it_is_goes_nowhere(self):
@@ -212,8 +212,8 @@ class Goto(Line):
     def test_does_not_arrive_in_time_and_is_stopped(self):
         self.avr.speed = 1
         _, err = self.tool("goto", "AVR", "0", "50", "--timeout", "3s", code=1)  # time enough to be heard
-        self.assertIn("has not arrived after 3s", err)
-        self.assertIn("--timeout", err)
+        self.assertTrue(err.endswith("amiroctl: goto: AVR has not arrived after 3s; it was stopped\n"
+                                     "          give it more time: --timeout 120s\n"), err)
         waiting.until(lambda: self.avr.heard[-1] == "{U,0,0}", "the robot is stopped")
 
     def on_the_way(self):
@@ -250,7 +250,8 @@ class Goto(Line):
         self.central.drop(self.avr)
         _, err = tool.communicate(timeout=60)
         self.assertEqual(tool.returncode, 1)
-        self.assertIn("AVR is lost: its link is gone", err)
+        self.assertIn("AVR is lost: its link is gone\n"
+                      "          a robot without a link stops; it can be connected again once it is near enough\n", err)
 
     def test_a_robot_that_falls_silent(self):
         self.avr.speed = 1
@@ -296,6 +297,8 @@ class Pause(Line):
         out, _ = self.tool("goto", "AVR", "0", "5")
         self.assertEqual(out, "AVR: x 5 cm, y 0 cm, heading 0 deg\n")
         self.assertTrue(self.avr.paused)
+        # It is asked behind each pause what it does, so that no more are said than it needs.
+        self.assertNotIn(("{S,PAU}", "{S,PAU}"), list(zip(self.avr.heard, self.avr.heard[1:])))
         self.tool("goto", "AVR", "0", "0")  # a stop ends no pause
         self.assertTrue(self.avr.paused)
         self.assertRegex(self.tool("robots", "--listen", "1s")[0], r"AVR .* paused")
@@ -350,7 +353,8 @@ class BadLinks(Line):
         self.avr.speed = 5
         out, err = self.tool("goto", "AVR", "0", "50", "--call-back", code=1)
         self.assertRegex(err, r"goto: the link to AVR is bad: [1-6]\d % of its sentences come whole; it is called back\n")
-        self.assertRegex(err, r"of its sentences come whole: it was called back\n")
+        self.assertRegex(err, r"of its sentences come whole: it was called back\n"
+                              "          bring the central nearer; or drop --call-back: then only a message says so\n")
         x, y = map(int, re.match(r"AVR: x (-?\d+) cm, y (-?\d+) cm", out).groups())
         self.assertLess(abs(x) + abs(y), 6)
         drives = [words for words in self.avr.heard if words.startswith("{U,")]

@@ -116,6 +116,10 @@ class Line(Case):
         self.assertIn("[0] AVR: 4 whole sentences, 5 damaged (1 packed and corrupt, 1 packed and torn, "
                       "2 packed and lost, 1 packed and repeated)", err)
         self.assertIn("[3] B: 1 whole sentence, 0 damaged; link quality 100 %", err)
+        # One of before, and one of a tower that cannot stand so.
+        heard, err = self.line(good + packed(4, *numbers) + packed(6, 0, 0, 0, 91, 0, 0, 0, 0))
+        self.assertEqual([line["sequence"] for line in heard], [5])
+        self.assertIn("1 whole sentence, 2 damaged (1 packed and late, 1 packed and out of range)", err)
         # What is said to a robot is never packed.
         heard, _ = self.line(good + b"{S,CON}", "--to-robot")
         self.assertEqual([line["type"] for line in heard], ["confirm"])

@@ -266,7 +266,7 @@ class Map(Case):
         out, err = tool.communicate(timeout=60)
         self.assertEqual((tool.returncode, out), (1, ""))
         self.assertIn("is gone", err)
-        self.assertIn("no update came", err)
+        self.assertIn("map: no update came that could be drawn\n", err)
         self.assertFalse(os.path.exists(file))
 
     def test_a_robot_that_was_connected_before_is_asked_for_its_size(self):

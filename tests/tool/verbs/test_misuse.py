@@ -559,6 +559,14 @@ top --interval 1ms
 top: --interval 1ms: twenty pictures a second are the most
 write --interval 50ms, or longer
 
+top --interval 49ms
+top: --interval 49ms: twenty pictures a second are the most
+write --interval 50ms, or longer
+
+top --interval 50ms
+top draws on a terminal, and standard output is none
+amiroctl stats and listen write to anything
+
 serve --adress 1
 serve: unknown option '--adress'
 did you mean '--address'?

@@ -17,7 +17,7 @@ import time
 from harness import AMIROCTL, SOURCE, Case, main, waiting
 
 sys.path.insert(0, os.path.join(SOURCE, "tests", "peers", "logs"))
-from virtual_bus import FRAME, GOODBYE, HELLO, MAGIC, VERSION, Client  # noqa: E402
+from virtual_bus import FRAME, GOODBYE, HELLO, MAGIC, OVERRUN, VERSION, Client  # noqa: E402
 
 LINE = re.compile(r"^\((\d+\.\d+)\) (\S+) (\S+)#(\S*)(?: ([RT]))?$")
 
@@ -257,6 +257,34 @@ class Recording(Case):
             _, err = recorder.communicate(timeout=60)
             self.assertEqual(recorder.returncode, 0 if name == "one.log" else 1, err)
         self.assertEqual(self.frames("one.log"), [("123", "")])
+
+    def test_what_was_lost_is_counted_and_a_failure_where_it_is_strict(self):
+        """In the simulator, which is played, and in a controller, which says so in a frame of errors."""
+        os.makedirs(self.path("ocm"), mode=0o700)
+        server = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        self.addCleanup(server.close)
+        server.bind(self.path("ocm/sim.sock"))
+        os.chmod(self.path("ocm/sim.sock"), 0o600)
+        server.listen()
+        server.settimeout(30)
+        error = 4  # its format; in its second byte it says that there was no room
+        for overflows, overrun, said in ((0, 7, ", 3 error frames, 7 lost in the receive queue\n"),
+                                         (2, 0, ", 3 error frames, 2 times frames lost in the controller\n"),
+                                         (2, 7, ", 3 error frames, 7 lost in the receive queue, 2 times frames lost in the controller\n"),
+                                         (0, 0, ", 3 error frames\n")):
+            for strict in ((), ("--strict",)):
+                recorder = self.start("--bus", "sim", "record", "-o", self.path("errors.log"), "--force", "-n", "4", *strict)
+                node, _ = server.accept()
+                self.addCleanup(node.close)
+                node.send(struct.pack("<B3xIIII12s", HELLO, MAGIC, VERSION, 500_000, 64, b"sim"))
+                for number in range(3):
+                    node.send(struct.pack("<BBBxIq8s8x", FRAME, error, 8, 4, time.time_ns(), b"\0\x01" if number < overflows else b""))
+                if overrun:
+                    node.send(struct.pack("<B7xQ16x", OVERRUN, overrun))
+                node.send(struct.pack("<BBBxIq8s8x", FRAME, 0, 0, 0x123, time.time_ns(), b""))
+                _, err = recorder.communicate(timeout=60)
+                self.assertEqual(recorder.returncode, 1 if strict and overflows + overrun else 0, err)
+                self.assertIn(said, err)
 
     def test_a_ring_is_a_budget_over_restarts(self):
         self.start_sim()

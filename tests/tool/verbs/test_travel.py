@@ -228,7 +228,8 @@ class Travel(Case):
         self.assertRegex(out, "^arrived; ")  # what was replaced has not sent zeros
         out, err = travel.communicate(timeout=20)
         self.assertEqual((travel.returncode, out), (1, ""), err)
-        self.assertRegex(err, r"travel: replaced by another program, travel 20B#10270000000\w+; 0\.\d+ m, 0 rad were left")
+        self.assertRegex(err, r"travel: replaced by another program, travel 20B#10270000000\w+; 0\.\d+ m, 0 rad were left\n"
+                              "          it was not ended: the robot does what came last\n")
 
     def test_a_follow_replaces_it(self):
         self.start_sim()  # which starts on the line
