@@ -312,6 +312,12 @@ class Central:
         return self.write("error: start, list, stop, conn i, switch i, drop i, *, reset\n")
 
 
+def row(**values):
+    """What the program that has the line says of the AVR, which has a link and has said something; with these values, too."""
+    usual = {"index": 0, "address": "C00000000000", "name": "AVR", "linked": 1, "confirmed": 1, "last": "idle"}
+    return "\t".join(f"{key}={value}" for key, value in (usual | values).items()) + "\n"
+
+
 class Owner:
     """A program that has a central's line: others join it, one after the other. `heard` is what they ask. It knows one robot at most:
     `robot` makes its row of what was asked so far."""
@@ -322,6 +328,7 @@ class Owner:
             digits = (digits ^ byte) * 0x01000193 & 0xFFFFFFFF
         self.heard = []
         self.robot = lambda heard: ""
+        self.ordered = b"ok\n1"  # what it answers to each order: its number, or why it is refused
         self.server = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         self.server.bind(os.path.join(folder, f"line-{digits:08x}.sock"))
         self.server.listen()
@@ -350,6 +357,6 @@ class Owner:
     def answer(self, request):
         if request.startswith("robots"):
             return f"ok\nidle\n{self.robot(self.heard)}".encode()
-        if request.startswith("go "):
-            return b"ok\n1"  # the number of the order
+        if request.startswith(("go ", "stop ", "calibrate ")):
+            return self.ordered
         return b"no\nit draws none\n" if request.startswith("map") else b"ok\nplayed"

@@ -1,10 +1,11 @@
 """amiroctl calibrate: a mapper's compass, on a central that is played on a pseudo terminal, and on the simulated robots."""
 
+import os
 import signal
 import time
 
 from harness import Case, main, waiting
-from played_central import Central, Robot
+from played_central import Central, Owner, Robot, row
 
 GOOD = "AVR: good: within 1 deg; field of the robot x 41 mG, y -57 mG, of the earth 152 mG; stored\n"
 
@@ -32,6 +33,7 @@ class Played(Case):
         self.assertEqual(self.calibrate("--show"), (GOOD, ""))
         self.assertEqual(self.avr.calibration, 2)
         self.assertNotIn("{C,3}", self.avr.heard[heard:])
+        self.assertNotIn("{U,0,0}", self.avr.heard)  # what has come to its end is not stopped
 
     def test_what_was_not_heard_is_said_again(self):
         self.avr.loses = 3
@@ -148,6 +150,48 @@ class Played(Case):
         self.assertEqual(tool.returncode, 1)
         self.assertIn("AVR is lost: it has said nothing for its deadline; it does not turn", err)
         self.assertLess(self.avr.heard.count("{C,0}"), 6)  # one each 700 ms; of a robot that speaks, for 10 s
+
+
+class OnALineOfAnotherProgram(Case):
+    """That program is played, and what it says of the robot. An update comes each time that it is asked: the robot is not paused."""
+
+    def setUp(self):
+        super().setUp()
+        central = Central(self.folder, [], link="ocm/central")
+        self.addCleanup(central.close)
+        self.owner = Owner(os.path.join(self.folder, "ocm"), central.path)
+        self.addCleanup(self.owner.close)
+
+    def says(self, **begun):
+        """What it says of the robot, with `begun` behind the order."""
+        self.owner.robot = lambda heard: row(updated=len(heard), **(begun if "calibrate 0" in heard else {}))
+
+    def orders(self):
+        return [request for request in self.owner.heard if request.split()[0] in ("go", "stop", "pause", "unpause", "calibrate")]
+
+    def failed(self):
+        out, err = self.run_tool("calibrate", "AVR", code=1)
+        self.assertEqual(out, "")
+        self.assertEqual(self.orders(), ["calibrate 0"])
+        return err
+
+    def test_one_that_may_not_be_calibrated_now_is_left_as_it_is(self):
+        self.says()
+        self.owner.ordered = b"no\nAVR is driven by goto (process 7)\nwait until that is over"
+        self.assertEqual(self.failed(), "amiroctl: calibrate: AVR is driven by goto (process 7)\n          wait until that is over\n")
+
+    def test_one_that_another_program_sends_meanwhile_is_left_to_it(self):
+        for compass in ("none", "turning"):
+            with self.subTest(compass=compass):
+                self.owner.heard.clear()
+                self.says(compass=compass, order=2, by="goto (process 7)")
+                self.assertEqual(self.failed(), "amiroctl: calibrate: another program has stopped AVR or sent it: goto (process 7)\n"
+                                                 "          calibrate it again once that is over\n")
+
+    def test_one_whose_link_was_gone_for_a_while(self):
+        self.says(compass="none", order=1)
+        self.assertEqual(self.failed(), "amiroctl: calibrate: the link to AVR was gone for a while; a robot without a link stops\n"
+                                         "          say it again\n")
 
 
 class OnSimulatedRobots(Case):

@@ -60,6 +60,17 @@ class Doctor(Case):
             asked.append(json.loads(listener.stdout.readline())["id"])
         self.assertEqual(asked, ["31B", "339", "357"] * 2 + ["123"])
 
+    def test_it_ends_when_all_that_can_answer_have(self):
+        """It waits for no board of a spec without statuses."""
+        sim = self.start_sim("--without", "di_wheel_drive,power_management,light_ring")
+        car = os.path.join(os.environ["OCM_SOURCE_DIR"], "examples", "small_car.dbc")
+        out, _ = self.run_tool("--spec", car, "doctor", "--listen", "1ms", "--patience", "1h")
+        self.assertEqual(out.splitlines()[-1], "nothing came, and nothing was due: --listen T listens longer")
+        self.interrupt(sim)
+        self.start_sim()
+        out, _ = self.run_tool("doctor", "--listen", "200ms", "--patience", "1h")
+        self.assertEqual(out.splitlines()[-1], "all is well")
+
     def test_no_board_answers(self):
         self.start_sim("--without", "di_wheel_drive,power_management,light_ring")
         report = self.examine(code=1)

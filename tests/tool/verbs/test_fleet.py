@@ -10,7 +10,7 @@ import termios
 import time
 
 from harness import AMIROCTL, Case, main, waiting
-from played_central import Central, Robot
+from played_central import Central, Owner, Robot, row
 from realtime import MOST_LATE
 
 
@@ -325,6 +325,42 @@ class Pause(Line):
         _, err = self.tool("pause", "AVR", code=1)
         self.assertIn("sends updates still", err)
         self.assertGreater(self.avr.heard.count("{S,PAU}"), 2)
+
+
+class OnALineOfAnotherProgram(Line):
+    """That program is played, and what it says of the robot. An update comes each time that it is asked: the robot is not paused."""
+
+    def setUp(self):
+        super().setUp()
+        self.owner = Owner(os.path.join(self.folder, "ocm"), self.central.path)
+        self.addCleanup(self.owner.close)
+
+    def test_a_robot_on_a_bad_link_goes_on_and_is_warned_about(self):
+        for values, said in (({}, ""),
+                             ({"advice": "bad_link", "quality": 419}, "unpause: the link to AVR is bad: 41 % of its sentences come whole; "
+                              "bring the central or the robot nearer\n"),
+                             ({"advice": "far_away"}, "unpause: AVR is almost out of the radio's range; bring the central or the robot nearer\n")):
+            with self.subTest(values=values):
+                self.owner.robot = lambda heard, values=values: row(updated=len(heard), **values)
+                self.assertEqual(self.run_tool("unpause", "AVR"), ("AVR: goes on\n", said))
+
+    def test_a_robot_that_is_lost_neither_pauses_nor_goes_on(self):
+        self.owner.robot = lambda heard: row(lost=1)
+        for verb in ("pause", "unpause"):
+            self.assertEqual(self.run_tool(verb, "AVR", code=1), ("", f"{verb}: AVR is lost\n"))
+
+    def test_a_robot_whose_link_was_gone_for_a_while_is_sent_nowhere(self):
+        self.owner.robot = lambda heard: row(updated=len(heard), order=int("go 0 90 50" in heard))
+        out, err = self.run_tool("goto", "AVR", "90", "50", code=1)
+        self.assertEqual((out, err), ("", "amiroctl: goto: the link to AVR was gone for a while; a robot without a link stops\n"
+                                          "          say it again\n"))
+
+    def test_a_stop_that_nothing_shows_in_time(self):
+        """It is said once more at the end, and heard then."""
+        self.owner.robot = lambda heard: row(order=int("stop 0" in heard), progress=("none", "stopping", "stopped")[min(2, heard.count("stop 0"))])
+        out, err = self.run_tool("goto", "AVR", "0", "0", "--timeout", "1ms", code=1)
+        self.assertEqual((out, err), ("", "amiroctl: goto: nothing shows within 1ms that AVR has heard the stop\n"
+                                          "          bring the central nearer, or switch the robot off\n"))
 
 
 class BadLinks(Line):

@@ -81,6 +81,15 @@ class Info(Case):
         self.assertIn("distance derived: root of 0.942693757 / (proximity - 2350) [0.0038, 0.2] m", lines)
         self.assertIn("distance_uncertainty standard deviation of distance by the noise of proximity, 4.57 [0, 0.019] m", lines)
 
+    def test_of_two_quantities_each_has_its_comment(self):
+        """Behind its own line, in the first of equal frames; of their uncertainties nothing is said."""
+        out, _ = self.run_tool("--spec", os.path.join(os.environ["OCM_SOURCE_DIR"], "tests", "generator", "golden", "whole.json"), "info", "ring")
+        lines = out.splitlines()
+        for name, comment in (("distance", "dark things seem far away"), ("glow", "rough. Very.")):
+            first = next(i for i, line in enumerate(lines) if line.startswith(f"    {name} "))
+            self.assertEqual(lines[first + 1], f"      comment   {comment}", out)
+        self.assertEqual(out.count("\n      comment "), 2, out)
+
     def test_a_message_by_its_number_and_a_field_by_its_name(self):
         car = ("--spec", os.path.join(os.environ["OCM_SOURCE_DIR"], "examples", "small_car.dbc"))
         self.assertIn("Engine (message of EngineControl, id 0x100)", self.run_tool(*car, "info", "0x100")[0])

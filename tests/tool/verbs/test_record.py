@@ -15,6 +15,7 @@ import threading
 import time
 
 from harness import AMIROCTL, SOURCE, Case, main, waiting
+from played_adapter import WithAdapter
 
 sys.path.insert(0, os.path.join(SOURCE, "tests", "peers", "logs"))
 from virtual_bus import FRAME, GOODBYE, HELLO, MAGIC, OVERRUN, VERSION, Client  # noqa: E402
@@ -683,6 +684,19 @@ class Recording(Case):
         # A line that breaks could not be erased; the last column is left free.
         lines = [line for line in self.said_on_a_terminal(*narrow).split("\r\x1b[K") if re.match(r"\d+ frames?, ", line)]
         self.assertEqual({len(line) for line in lines}, {39}, lines)
+
+
+class OnASerialLine(WithAdapter, Case):
+    def test_frames_that_were_lost_are_a_failure_where_it_is_strict(self):
+        """An adapter says of itself, as it is opened, that it had no room, or that its controller warns: a frame of the recording."""
+        log = os.path.join(self.folder, "a.log")
+        for events, strict, code in ((0x01, ("--strict",), 1), (0x01, (), 0), (0x04, ("--strict",), 0)):
+            with self.subTest(events=events, strict=strict):
+                adapter = self.adapter()
+                adapter.events = events
+                _, err = self.run_tool("--bus", f"slcan:{adapter.path}", "record", "-o", log, "--force", "-n", "1", *strict, code=code)
+                self.assertRegex(err, r"\nrecorded 1 frame in ")
+                self.assertEqual("lost in the controller" in err, events == 0x01, err)
 
 
 if __name__ == "__main__":
