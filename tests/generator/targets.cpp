@@ -379,4 +379,211 @@ TEST_CASE("targets: a named number of C++ is one that a compiler takes, whatever
             "    upper = 9'223'372'036'854'775'808U,\n    all = 18'446'744'073'709'551'615U,\n  };\n"));
 }
 
+TEST_CASE("targets: a bus that names no namespace has its own name as one, in lower case") {
+  const auto space = [](const std::string& robot, const std::string& name_space = {}) {
+    spec::Model model;
+    model.robot = robot;
+    model.name_space = name_space;
+    return generate::name_space_of(model);
+  };
+  CHECK(space("azAZ09") == "azaz09");
+  CHECK(space("Small Car") == "small_car");
+  CHECK(space("1st") == "n1st");
+  CHECK(space("Robot", "other") == "other");
+  // What none can be called has an underscore behind it.
+  CHECK(space("Int") == "int_");
+  CHECK(space("int") == "int_");
+  CHECK(space("Ocm") == "ocm_");
+  CHECK(space("STD") == "std_");
+  CHECK(space("Ocm2") == "ocm2");
+}
+
+/// A field of the eight bits of a byte, that is there with these numbers of its selector.
+spec::FieldModel field_of_byte(const std::string& name, unsigned byte, std::int64_t start,
+                               const std::string& selector = {},
+                               std::vector<protocol::SelectorRange> selected = {}) {
+  spec::FieldModel field;
+  field.name = name;
+  field.position = {static_cast<std::uint16_t>(8 * byte), 8, protocol::ByteOrder::little};
+  field.start = start;
+  field.selector = selector;
+  field.selected = std::move(selected);
+  return field;
+}
+
+TEST_CASE("targets: a message begins with the start values of those fields that are there") {
+  using Bytes = std::vector<std::uint8_t>;
+  spec::MessageModel message;
+  message.length = 6;
+  message.fields = {field_of_byte("below", 1, 11, "page", {{0, 3}}),
+                    field_of_byte("first", 2, 22, "page", {{4, 9}}),
+                    field_of_byte("last", 3, 33, "page", {{0, 4}}),
+                    field_of_byte("above", 4, 44, "page", {{5, 9}}),
+                    field_of_byte("deep", 5, 55, "last", {{1, 1}, {33, 33}}),
+                    field_of_byte("page", 0, 4)};
+  CHECK(generate::start_bytes(message) == Bytes{4, 0, 22, 33, 0, 55, 0, 0});
+  const auto levels = generate::selection_levels(message);
+  REQUIRE(levels.size() == 6);
+  for (const auto& [field, level] : {std::pair{0U, 1U}, {2U, 1U}, {4U, 2U}, {5U, 0U}}) {
+    CAPTURE(field);
+    CHECK(levels.at(&message.fields[field]) == level);
+  }
+  CHECK(generate::selector_of(message, message.fields[0]) == &message.fields[5]);
+  CHECK(generate::selector_of(message, message.fields[5]) == nullptr);
+  // What is selected by a field that the length does not hold is not there.
+  message.length = 2;
+  message.fields = {field_of_byte("own", 0, 7), field_of_byte("page", 2, 1),
+                    field_of_byte("of_page", 1, 9, "page", {{0, 255}})};
+  CHECK(generate::start_bytes(message) == Bytes{7, 0, 0, 0, 0, 0, 0, 0});
+  const auto shorter = generate::selection_levels(message);
+  REQUIRE(shorter.size() == 2);
+  CHECK(shorter.at(&message.fields[0]) == 0);
+  CHECK(shorter.at(&message.fields[2]) == 1);
+  CHECK(generate::selector_of(message, message.fields[2]) == nullptr);
+  CHECK(generate::fields_beyond(message) == std::vector<std::string>{"page"});
+}
+
+/// What stands behind these words on the first line of a text that has them; "none": no line has.
+std::string behind(const std::string& text, const std::string& words) {
+  const auto at = text.find(words);
+  if (at == std::string::npos) return "none";
+  const auto begin = at + words.size();
+  return text.substr(begin, text.find('\n', begin) - begin);
+}
+
+TEST_CASE("targets: the times of a DBC file of topics are whole numbers where all of its periods are") {
+  const auto type = [](const std::string& topic, const std::string& message) {
+    const std::string text =
+        made("dbc", R"({"robot": "r", "namespace": "r", "bus": {"bit_rate": 500000, "source": "s"},
+          "boards": [{"name": "b", "mcu": "m", "source": "s"}], "topics": [{"name": "t", "id": "0x10", "board": "b",
+          "source": "s", "frames": [{"dlc": 0, "fields": []}], "period": ")" +
+                        topic + R"("}], "messages": [{"name": "M", "id": "0x7F0", "fields": [])" + message +
+                        "}]}");
+    return behind(text, "BA_DEF_ BO_ \"GenMsgCycleTime\" ");
+  };
+  CHECK(type("10ms", "") == "INT 0 65535000;");
+  CHECK(type("10ms", R"(, "period": "20ms")") == "INT 0 65535000;");
+  CHECK(type("1500us", "") == "FLOAT 0 65535000;");
+  CHECK(type("10ms", R"(, "period": "1500us")") == "FLOAT 0 65535000;");
+}
+
+TEST_CASE("targets: how messages are sent is an enumeration of a DBC file where one can hold all of it") {
+  const auto sent = [](const std::string& first, const std::string& second) {
+    const auto member = [](const std::string& type) {
+      return type.empty() ? "" : R"(, "send_type": ")" + type + "\"";
+    };
+    return made("dbc", R"({"robot": "r", "messages": [{"name": "M", "id": 1)" + member(first) +
+                           R"(, "fields": []}, {"name": "N", "id": 2)" + member(second) +
+                           R"(, "fields": []}]})");
+  };
+  const std::string definition = "BA_DEF_ BO_ \"GenMsgSendType\" ", value = "BA_ \"GenMsgSendType\" BO_ ";
+  CHECK_FALSE(has(sent("", ""), "GenMsgSendType"));
+  CHECK(behind(sent("Cyclic", "Once"), definition) == R"(ENUM "Cyclic","Once" ;)");
+  CHECK(behind(sent("Cyclic", "Once"), value) == "2 1;");  // the first one is the default
+  CHECK(behind(sent("Cyclic", "Cyclic"), definition) == R"(ENUM "Cyclic" ;)");
+  CHECK_FALSE(has(sent("Cyclic", "Cyclic"), value));
+  CHECK(behind(sent("Cyclic", "a b"), definition) == R"(ENUM "Cyclic","a b" ;)");
+  CHECK(behind(sent("Cyclic", "7a"), definition) == R"(ENUM "Cyclic","7a" ;)");
+  // Without one, of a character that a list cannot have, and of a number that would be that of a name.
+  for (const char* other : {"", "a,b", R"(a\"b)", R"(a\\b)", "7", "0.5"}) {
+    CAPTURE(other);
+    for (const std::string& text : {sent("Cyclic", other), sent(other, "Cyclic")}) {
+      CHECK(behind(text, definition) == "STRING ;");
+      CHECK(behind(text, "BA_DEF_DEF_ \"GenMsgSendType\" ") == "\"\";");
+    }
+    CHECK(behind(sent("Cyclic", other), value + "1 ") == "\"Cyclic\";");
+    CHECK(behind(sent(other, "Cyclic"), value + "2 ") == "\"Cyclic\";");
+  }
+  CHECK(behind(sent("Cyclic", "a,b"), value + "2 ") == "\"a,b\";");
+  CHECK(behind(sent("Cyclic", "7"), value + "2 ") == "\"7\";");
+}
+
+TEST_CASE("targets: an attribute of a DBC file has one type, which all of its values have") {
+  const auto with = [](const std::string& first, const std::string& second) {
+    return made("dbc", R"({"robot": "r", "messages": [
+      {"name": "M", "id": 1, "fields": [], "attributes": {"K": ")" +
+                           first + R"("}}, {"name": "N", "id": 2, "fields": [], "attributes": {"K": ")" +
+                           second + R"("}}]})");
+  };
+  const auto type = [&](const std::string& first, const std::string& second) {
+    const std::string rest = behind(with(first, second), "BA_DEF_ BO_ \"K\" ");
+    return rest.substr(0, rest.find(' '));
+  };
+  CHECK(type("1", "2") == "INT");
+  CHECK(type("1", "2.5") == "FLOAT");
+  CHECK(type("2.5", "1") == "FLOAT");
+  for (const char* number : {"1", "2.5"}) {
+    CAPTURE(number);
+    CHECK(type(number, "one") == "STRING");
+    CHECK(type("one", number) == "STRING");
+    CHECK(behind(with(number, "one"), "BA_ \"K\" BO_ 1 ") == "\"" + std::string{number} + "\";");
+    CHECK(behind(with(number, "one"), "BA_DEF_DEF_ \"K\" ") == "\"\";");
+  }
+  CHECK(behind(with("1", "2.5"), "BA_ \"K\" BO_ 1 ") == "1;");
+  CHECK(behind(with("1", "2.5"), "BA_ \"K\" BO_ 2 ") == "2.5;");
+  CHECK(behind(with("1", "2.5"), "BA_DEF_DEF_ \"K\" ") == "0;");
+}
+
+TEST_CASE("targets: a DBC file says what each frame is where there is CAN FD or another protocol") {
+  const auto with = [](const std::string& members, const std::string& fd = {}) {
+    return made("dbc", R"({"robot": "r", )" + members + R"("messages": [{"name": "M", "id": 1, "length": 8)" +
+                           fd + R"(, "fields": []}, {"name": "W", "id": "0x18FEF100", "format": "extended",
+                           "length": 8)" +
+                           fd + R"(, "fields": []}]})");
+  };
+  const std::string value = "BA_ \"VFrameFormat\" BO_ ";
+  CHECK_FALSE(has(with(""), "VFrameFormat"));
+  CHECK_FALSE(has(with(R"("attributes": {"Maker": "x"}, )"), "VFrameFormat"));
+  for (const char* members :
+       {R"("attributes": {"ProtocolType": "J1939"}, )",
+        R"("attribute_definitions": [{"of": "bus", "name": "ProtocolType", "type": "string"}], )"}) {
+    CAPTURE(members);
+    const std::string text = with(members);
+    CHECK(behind(text, "BA_DEF_ BO_ \"VFrameFormat\" ")
+              .starts_with(R"(ENUM "StandardCAN","ExtendedCAN","reserved","J1939PG",)"));
+    CHECK(behind(text, value + "1 ") == "none");
+    CHECK(behind(text, value + "2566844672 ") == "1;");
+  }
+  const std::string fd = with("", R"(, "fd": true)");
+  CHECK(behind(fd, value + "1 ") == "14;");
+  CHECK(behind(fd, value + "2566844672 ") == "15;");
+}
+
+TEST_CASE(
+    "targets: a DBC file has the start values that are stated, and a default where all fields have one") {
+  const auto with = [](const std::string& first, const std::string& second) {
+    const auto member = [](const std::string& start) { return start.empty() ? "" : ", \"start\": " + start; };
+    return made("dbc", R"({"robot": "r", "messages": [{"name": "M", "id": 1, "fields": [
+      {"name": "a", "byte": 0, "type": "u32")" +
+                           member(first) + R"(}, {"name": "b", "byte": 4, "type": "u32")" + member(second) +
+                           "}]}]}");
+  };
+  const std::string definition = "BA_DEF_ SG_ \"GenSigStartValue\" ",
+                    usual = "BA_DEF_DEF_ \"GenSigStartValue\" ", value = "BA_ \"GenSigStartValue\" SG_ 1 ",
+                    whole = "INT -2147483648 2147483647 ;", real = "FLOAT -1e19 1e19 ;";
+  CHECK_FALSE(has(with("", ""), "GenSigStartValue"));
+  CHECK_FALSE(has(made("dbc", of_topic(R"({"name": "x", "byte": 0, "type": "u8"})")), "GenSigStartValue"));
+  struct Row {
+    const char* first;
+    const char* second;
+    std::string type;
+    const char* usual;
+    const char* a;
+    const char* b;
+  };
+  for (const Row& row :
+       {Row{"7", "", whole, "none", "7;", "none"}, Row{"0", "", whole, "none", "0;", "none"},
+        Row{"", "7", whole, "none", "none", "7;"}, Row{"0", "0", whole, "0;", "none", "none"},
+        Row{"0", "7", whole, "0;", "none", "7;"}, Row{"2147483647", "7", whole, "0;", "2147483647;", "7;"},
+        Row{"2147483648", "7", real, "0;", "2147483648;", "7;"},
+        Row{"7", "4294967295", real, "0;", "7;", "4294967295;"}}) {
+    CAPTURE(row.first, row.second);
+    const std::string text = with(row.first, row.second);
+    CHECK(behind(text, definition) == row.type);
+    CHECK(behind(text, usual) == row.usual);
+    CHECK(behind(text, value + "a ") == row.a);
+    CHECK(behind(text, value + "b ") == row.b);
+  }
+}
+
 }  // namespace generator_targets_test

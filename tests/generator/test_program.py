@@ -147,6 +147,18 @@ class Program(unittest.TestCase):
         self.assertEqual(done.returncode, 1)
         self.assertIn("No space left", done.stderr)
 
+    def test_what_is_said_of_each_place_that_takes_no_header(self):
+        for output, said in (("no/x.hpp", "no/x.hpp: it cannot be written: No such file or directory; a folder that exists and that you may write to\n"),
+                             (".", ".: it is a folder; the path of the file within it\n"),
+                             ("/dev/full", "/dev/full: No space left on device; a file that you may write\n")):
+            done = run("good.json", "-o", output, cwd=self.folder)
+            self.assertEqual((done.returncode, done.stdout, done.stderr), (1, "", said))
+        for arguments in ((self.spec, "-o", "-"), ("--version",)):
+            with open("/dev/full", "w") as full:
+                done = subprocess.run([TOOL, *map(str, arguments)], stdout=full, stderr=subprocess.PIPE, text=True, timeout=60)
+            self.assertEqual((done.returncode, done.stderr), (1, "the standard output: No space left on device; somewhere that takes the file\n"))
+        self.assertEqual(os.listdir(self.folder), ["good.json"])
+
     def test_a_header_for_which_there_is_too_little_room(self):
         """The old one stays as it is, and nothing lies beside it."""
         def little():
@@ -442,6 +454,24 @@ class Program(unittest.TestCase):
         for name in ("azAZ09", "near"):
             self.assertIn(f"typedef struct x_{name} {{", done.stdout)
         self.assertIn("#define X_AZAZ09_ID 0x00Bu\n", done.stdout)
+
+    def test_messages_of_the_names_that_every_header_of_topics_has(self):
+        """Those of frames and requests. Without topics there are none."""
+        names = ("frame", "priority", "mode", "unit", "command_id", "sample_id", "is_sample", "priority_of", "topic_of", "request_of_mode", "stop",
+                 "once", "publish", "publish_every", "request", "period_us", "read_request")
+        messages = [{"name": name, "id": 0x100 + i, "format": "extended", "fields": []} for i, name in enumerate((*names, "wrong", "other"))]
+        robot = {"robot": "x", "namespace": "x", "bus": {"bit_rate": 500000, "source": "s"}, "boards": [{"name": "b", "mcu": "m", "source": "s"}]}
+        topic = {"name": "t", "id": 1, "board": "b", "source": "s", "frames": [{"dlc": 0, "fields": []}]}
+        for spec, number, mark in (({**robot, "topics": [topic], "messages": messages}, "_2", "_"), ({"robot": "x", "messages": messages}, "", "")):
+            self.spec.write_text(json.dumps(spec))
+            done = run(self.spec, "--to", "c", "-o", "-")
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+            for name in names:
+                self.assertIn(f"\ntypedef struct x_{name}{number} {{ uint8_t bytes[8]; }} x_{name}{number};\n", done.stdout)
+            for name in ("wrong", "other"):
+                self.assertIn(f"\ntypedef struct x_{name} {{ uint8_t bytes[8]; }} x_{name};\n", done.stdout)
+            self.assertIn(f"\n#define X_WRONG_LENGTH{mark} 0u\n", done.stdout)  # "wrong length" is an answer of the request part
+            self.assertIn("\n#define X_OTHER_LENGTH 0u\n", done.stdout)
 
     def test_a_message_without_a_sender_where_there_are_as_many_boards_as_there_may_be(self):
         bus = self.folder / "bus.dbc"

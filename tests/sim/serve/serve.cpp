@@ -2,6 +2,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstdlib>
+#include <fcntl.h>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -11,10 +12,12 @@
 #include <string_view>
 #include <thread>
 #include <unistd.h>
+#include <utility>
 #include <vector>
 
 #include <catch2/catch.hpp>
 
+#include "ocm/host/descriptor.hpp"
 #include "ocm/protocol/message.hpp"
 #include "ocm/protocol/request.hpp"
 #include "ocm/simulation/virtual_bus_server.hpp"
@@ -279,9 +282,10 @@ TEST_CASE(
   CHECK(end - begin >= 90ms);
 }
 
-/// How often a simulation's loop goes round in a fifth of a second.
-int turns_of(const std::function<Ending(const sim::Shell& shell)>& serve) {
-  const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds{200};
+/// How often a simulation's loop goes round in this time.
+int turns_of(const std::function<Ending(const sim::Shell& shell)>& serve,
+             std::chrono::milliseconds time = std::chrono::milliseconds{200}) {
+  const auto end = std::chrono::steady_clock::now() + time;
   int turns = 0;
   const sim::Shell shell{[&] {
                            ++turns;
@@ -499,6 +503,177 @@ TEST_CASE("A world that cannot be had is said with all that is wrong with it") {
     CHECK(ending.misuse);
   }
   CHECK(watched.reports.empty());
+}
+
+TEST_CASE("Mappers whose loop has nothing to do look for programs fifty times a second, and no more often") {
+  const Folder folder;
+  for (const bool lines : {false, true}) {
+    CAPTURE(lines);
+    sim::MapperOptions mappers;
+    mappers.robots = 2;
+    mappers.lines = lines;
+    mappers.speed = 0.001;  // what comes next is seconds away
+    CHECK(turns_of([&](const sim::Shell& shell) { return sim::serve_mappers(mappers, shell); },
+                   std::chrono::milliseconds{60}) < 50);
+  }
+}
+
+/// What a simulation reports that is ended a round after it has run for a tenth of a second.
+std::vector<std::string> reports_of(const std::function<Ending(const sim::Shell& shell)>& serve) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds{100};
+  bool is_over = false;  // one more round has what was due until then
+  Watched watched;
+  sim::Shell shell = watched.shell();
+  shell.stop = [&] { return std::exchange(is_over, std::chrono::steady_clock::now() > end); };
+  CHECK(serve(shell).well());
+  return watched.reports;
+}
+/// The number behind these words in the line that begins with them; 0: there is no such line.
+unsigned long number_behind(const std::vector<std::string>& lines, const std::string& words) {
+  for (const std::string& line : lines)
+    if (line.starts_with(words)) return std::stoul(line.substr(words.size()));
+  return 0;
+}
+
+TEST_CASE(
+    "A round on a virtual bus has all messages that are due in it, also beside the boards of an AMiRo") {
+  const Folder folder;
+  const OneMessage often{std::chrono::milliseconds{1}};
+  const std::string sent = "unknown sender    sent ";
+  const auto alone = reports_of([&](const sim::Shell& shell) {
+    return sim::serve_messages(folder / "bus", often.catalogue, {}, shell);
+  });
+  CHECK(number_behind(alone, sent) >= 20U);
+  sim::AmiroOptions options;
+  options.messages = &often.catalogue;
+  const auto beside =
+      reports_of([&](const sim::Shell& shell) { return sim::serve_amiro(folder / "bus", options, shell); });
+  CHECK(number_behind(beside, sent) >= 20U);
+}
+
+TEST_CASE("Interference on a virtual bus comes as often as it is asked for, and is counted at the end") {
+  const Folder folder;
+  const OneMessage seldom{std::chrono::hours{1}};
+  const std::string indent(18, ' ');
+  sim::MessagesOptions messages;
+  messages.bus_errors = 5000;
+  const auto of_messages = reports_of([&](const sim::Shell& shell) {
+    return sim::serve_messages(folder / "bus", seldom.catalogue, messages, shell);
+  });
+  CHECK(number_behind(of_messages, indent) >= 20U);
+  sim::AmiroOptions amiro;
+  amiro.bus_errors = 5000;
+  const auto of_boards =
+      reports_of([&](const sim::Shell& shell) { return sim::serve_amiro(folder / "bus", amiro, shell); });
+  CHECK(number_behind(of_boards, indent) >= 20U);
+}
+
+TEST_CASE("Messages beside the boards of an AMiRo: which of them are not sent is said first") {
+  const Folder folder;
+  const OneMessage often{std::chrono::milliseconds{1}};
+  std::vector<protocol::Topic> topics{often.message, often.message};
+  topics[1].name = "Rare";
+  topics[1].cycle = {};
+  const protocol::Catalogue catalogue{"car", 500'000, {}, topics};
+  sim::AmiroOptions options;
+  options.messages = &catalogue;
+  for (const bool sporadic : {false, true}) {
+    CAPTURE(sporadic);
+    options.sporadic = std::chrono::seconds{sporadic ? 1 : 0};
+    Watched watched{.turns = 0};
+    CHECK(sim::serve_amiro(folder / "bus", options, watched.shell()).well());
+    REQUIRE(watched.reports.size() == (sporadic ? 5U : 6U));
+    const std::string& first = watched.reports.front();
+    if (sporadic)
+      CHECK(first.starts_with("simulated AMiRo on --bus sim:"));
+    else
+      CHECK(first == "not sent, since the spec states no period: Rare (--sporadic 1s sends them too)");
+  }
+}
+
+TEST_CASE("A fleet has as many robots as a central tells apart") {
+  const Folder folder;
+  Watched watched{.turns = 0};
+  sim::MapperOptions options;
+  options.world = folder / "many.json";
+  std::string robots;
+  for (int i = 0; i < 128; ++i)
+    robots += (i == 0 ? R"({"name": ")" : R"(, {"name": ")") + std::to_string(i) +
+              R"(", "model": "avr", "at": [)" + std::to_string(i) + ", 0]}";
+  std::ofstream{options.world} << R"({"name": "many", "walls": [], "robots": [)" << robots << "]}";
+  const Ending ending = sim::serve_mappers(options, watched.shell());
+  for (const auto& failure : ending.failures) UNSCOPED_INFO(failure.what);
+  CHECK(ending.well());
+  REQUIRE(watched.reports.size() == 2 + 2 * 128);
+  CHECK(watched.reports.front().starts_with("simulated 128 mappers in 'many', "));
+  CHECK(watched.reports.back() == "central    nothing was lost");
+}
+
+TEST_CASE("A second simulation of mappers on the same lines fails, and the options are not to blame") {
+  const Folder folder;
+  for (const bool lines : {false, true}) {
+    CAPTURE(lines);
+    sim::MapperOptions options;
+    options.robots = 1;
+    options.lines = lines;
+    Watched inner{.turns = 0}, watched;
+    Ending second;
+    sim::Shell shell = watched.shell();
+    shell.stop = [&] {
+      second = sim::serve_mappers(options, inner.shell());
+      return true;
+    };
+    CHECK(sim::serve_mappers(options, shell).well());
+    REQUIRE(second.failures.size() == 1);
+    CHECK(second.failures[0].what ==
+          "another program serves '" + (folder / (lines ? "ocm/line/AVR" : "ocm/central")) + "'");
+    CHECK_FALSE(second.misuse);
+    CHECK(inner.reports.empty());
+  }
+}
+
+/// What the central of these mappers answers to a program that lets it scan for half a minute of its time and
+/// then stops it.
+std::string found(const Folder& folder, sim::MapperOptions options) {
+  using namespace std::chrono_literals;
+  using Clock = std::chrono::steady_clock;
+  options.speed = 1000;
+  const auto give_up = Clock::now() + 20s;
+  host::Descriptor line;
+  std::string heard;
+  Clock::time_point stop_it = Clock::time_point::max();
+  bool is_stopped = false;
+  const sim::Shell shell{[&] {
+                           if (!line) {
+                             line = host::Descriptor{::open((folder / "ocm/central").c_str(),
+                                                            O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC)};
+                             return !line || ::write(line.get(), "start\n", 6) != 6;
+                           }
+                           char text[256];
+                           const ssize_t size = ::read(line.get(), text, sizeof text);
+                           if (size > 0) heard.append(text, static_cast<std::size_t>(size));
+                           const auto now = Clock::now();
+                           if (stop_it == Clock::time_point::max() && heard == "scanning\n")
+                             stop_it = now + 30ms;
+                           if (!is_stopped && now >= stop_it)
+                             is_stopped = ::write(line.get(), "stop\n", 5) == 5;
+                           return (is_stopped && heard.size() > 9 && heard.back() == '\n') || now > give_up;
+                         },
+                         [](std::string_view) {}};
+  CHECK(sim::serve_mappers(options, shell).well());
+  return heard;
+}
+
+TEST_CASE("A fleet's radio reaches as far as it is asked to, and loses what it is asked to lose") {
+  const Folder folder;
+  sim::MapperOptions options;
+  CHECK(found(folder, options) == "scanning\nfound 1\n");
+  options.radio_range = 0.4;  // the robot is half a metre away
+  CHECK(found(folder, options) == "scanning\nfound 0\n");
+  options.radio_range = 0.6;
+  CHECK(found(folder, options) == "scanning\nfound 1\n");
+  options.radio_loss = 1;
+  CHECK(found(folder, options) == "scanning\nfound 0\n");
 }
 
 }  // namespace sim_serve_serve_test
