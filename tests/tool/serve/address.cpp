@@ -1,12 +1,16 @@
 #include "cli/serve/address.hpp"
 
+#include <chrono>
+#include <csignal>
 #include <fcntl.h>
 #include <filesystem>
 #include <fstream>
 #include <poll.h>
 #include <string>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <system_error>
+#include <thread>
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
@@ -77,6 +81,20 @@ TEST_CASE("address: a browser gets it as it is, and none of this program's strea
     CHECK(errors.text().empty());
     CHECK(browser.says() == "1 http://h/#0f&plot=/gyro.z\n/dev/null\n/dev/null\n/dev/null\n");
   }
+}
+
+TEST_CASE("address: of a browser that has ended no process is left") {
+  const Browser browser;
+  const Environment display{"DISPLAY", ":7"};
+  const Environment path{"PATH", (browser.folder() + ":/usr/bin:/bin").c_str()};
+  open_in_browser("http://h/");
+  CHECK(browser.says().starts_with("1 http://h/\n"));  // and it ends
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds{20};
+  siginfo_t child{};
+  while (::waitid(P_ALL, 0, &child, WEXITED | WNOHANG | WNOWAIT) == 0 &&
+         std::chrono::steady_clock::now() < end)
+    std::this_thread::yield();
+  CHECK(::waitid(P_ALL, 0, &child, WEXITED | WNOHANG | WNOWAIT) == -1);
 }
 
 TEST_CASE("address: why no browser opens it") {

@@ -67,6 +67,8 @@ class Line final : public cli::fleet::LineEnd {
     robots[robot].progress = Progress::heard;
     robots[robot].located = false;
   }
+  /// The central finds no robot.
+  void finds_none() { peers_.clear(); }
   void stands(unsigned robot, Progress progress, std::int16_t x_cm, std::int16_t y_cm) {
     robots[robot].progress = progress;
     robots[robot].located = true;
@@ -92,10 +94,12 @@ struct Desk {
   Line line;
   std::vector<std::string> told;
   std::vector<Level> levels;
+  std::vector<cli::serve::ViewerId> to;
   base::Time now{1h};
-  Errands errands{[this](cli::serve::ViewerId, Level level, const std::string& words) {
+  Errands errands{[this](cli::serve::ViewerId viewer, Level level, const std::string& words) {
                     told.push_back(words);
                     levels.push_back(level);
+                    to.push_back(viewer);
                   },
                   [this](unsigned index) { return line.robot(index); }};
 
@@ -238,6 +242,7 @@ TEST_CASE("errands: how a drive may end otherwise") {
   desk.line.refuses = "the line is full";
   desk.take(Kind::go, "one", {1, 0});
   CHECK(desk.says("the line is full; wait"));
+  CHECK_FALSE(desk.errands.busy());
 }
 
 TEST_CASE("errands: who is meant, and where it is") {
@@ -412,6 +417,50 @@ TEST_CASE("errands: robots of one name, and those that cannot be sent") {
   CHECK(same.says("2 robots are called 'one': name one by its index"));
   same.take(Kind::stop, "0");
   CHECK(same.line.said.size() == 1);
+}
+
+TEST_CASE("errands: a central without robots has none") {
+  Desk desk;
+  desk.line.finds_none();
+  desk.take(Kind::stop, "0");
+  CHECK(desk.told == std::vector<std::string>{"the central has no robot '0'; it has none"});
+  CHECK(desk.levels == std::vector<Level>{Level::error});
+  CHECK(desk.line.said.empty());
+}
+
+TEST_CASE("errands: how a pause ends, how serious that is, and who hears of it") {
+  Desk desk;
+  const auto ends = [&](Kind kind, cli::serve::ViewerId viewer, base::Duration time) {
+    desk.told.clear();
+    desk.take(kind, "one", {}, false, viewer);
+    CHECK_FALSE(desk.errands.target(0));
+    desk.step(time);
+  };
+  desk.line.robots[0].lost = true;
+  ends(Kind::pause, 7, 50ms);
+  CHECK(desk.says("one is lost"));
+  desk.line.robots[0].lost = false;
+  ends(Kind::go_on, 8, 50ms);
+  CHECK(desk.told.empty());
+  CHECK(desk.errands.busy());
+  desk.line.robots[0].updated = desk.now;
+  desk.step();
+  CHECK(desk.says("one goes on"));
+  ends(Kind::go_on, 9, 11s);
+  CHECK(desk.says("nothing shows that one goes on"));
+  CHECK(desk.levels == std::vector<Level>{Level::error, Level::info, Level::error});
+  CHECK(desk.to == std::vector<cli::serve::ViewerId>{7, 8, 9});
+  CHECK_FALSE(desk.errands.busy());
+}
+
+TEST_CASE("errands: a robot that stands where it was sent is not stopped when its viewer goes away") {
+  Desk desk;
+  desk.take(Kind::go, "one", {1, 0});
+  desk.line.stands(0, Progress::reached, 100, 0);
+  for (int i = 0; i < 2; ++i) desk.step();
+  CHECK(desk.says("one is there"));
+  desk.errands.gone(desk.line, 7);
+  CHECK(desk.line.said.size() == 1);
 }
 
 TEST_CASE("errands: one order a robot at a time, the newest") {

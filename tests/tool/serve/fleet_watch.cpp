@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <condition_variable>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
@@ -69,6 +70,11 @@ class Owner {
     const std::lock_guard lock{mutex_};
     if (caller_ >= 0) ::shutdown(caller_, SHUT_RDWR);
   }
+  /// Whether it has done all that it was asked.
+  void set_idle(bool idle) {
+    const std::lock_guard lock{mutex_};
+    idle_ = idle;
+  }
   /// What was asked but for its robots, in order.
   [[nodiscard]] Strings heard() {
     const std::lock_guard lock{mutex_};
@@ -96,7 +102,7 @@ class Owner {
   std::string answer_to(const std::string& request) {
     const std::lock_guard lock{mutex_};
     if (request.starts_with("robots ")) {
-      std::string answer = "ok\nidle\n";
+      std::string answer = idle_ ? "ok\nidle\n" : "ok\nwaits\n";
       for (const RobotNow& robot : robots_) answer += to_row(robot) + "\n";
       return answer;
     }
@@ -113,6 +119,7 @@ class Owner {
   std::mutex mutex_;
   std::vector<RobotNow> robots_;
   Strings heard_;
+  bool idle_ = true;
   std::uint64_t orders_ = 0;
   int caller_ = -1;
   host::Descriptor listener_;
@@ -167,10 +174,12 @@ struct Desk {
     while (!is()) {
       viewers.hear(viewer);  // it answers whether it is there
       if (const auto message = viewers.next(viewer, base::Time{})) {
-        if (message->binary)
-          state = Json::parse(*message->payload);
-        else
+        if (!message->binary) {
           told.push_back(Json::parse(*message->payload)["message"]);
+        } else if (message->head[1] == 0) {  // robots, and no map
+          state = Json::parse(*message->payload);
+          ++states;
+        }
         continue;
       }
       if (std::chrono::steady_clock::now() >= end) return false;
@@ -184,10 +193,11 @@ struct Desk {
     return std::any_of(told.begin(), told.end(),
                        [words](const std::string& each) { return each.find(words) != std::string::npos; });
   }
-  [[nodiscard]] bool has_heard(const std::string& request) {
+  [[nodiscard]] std::ptrdiff_t times_heard(const std::string& request) {
     const Strings all = owner.heard();
-    return std::find(all.begin(), all.end(), request) != all.end();
+    return std::count(all.begin(), all.end(), request);
   }
+  [[nodiscard]] bool has_heard(const std::string& request) { return times_heard(request) != 0; }
 
   test::Captured errors{STDERR_FILENO};
   Folder folder;
@@ -197,6 +207,7 @@ struct Desk {
   Orders orders;
   ViewerId viewer = viewers.add();
   Json state = Json::object();
+  std::size_t states = 0;  ///< that came
   Strings told;
   std::mutex mutex;
   std::condition_variable woken;
@@ -264,6 +275,32 @@ TEST_CASE("fleet watch: a line that is gone is waited for, and joined again when
   REQUIRE(desk.until([&] { return desk.robots() == 2; }));
   CHECK(desk.state["gone"] == "");
   CHECK(desk.is_told("it has joined played (process "));
+}
+
+TEST_CASE("fleet watch: robots are said five times a second, and a map is asked for once a second") {
+  const auto begin = std::chrono::steady_clock::now();
+  Desk desk{{linked(0, "A")}, {}};
+  REQUIRE(desk.viewers.subscribe(desk.viewer, {1, 1}).empty());
+  REQUIRE(desk.until([&] { return desk.states == 2; }));
+  const auto maps = desk.times_heard("map grid");
+  const auto passed = std::chrono::steady_clock::now() - begin;
+  CHECK(passed >= 200ms);
+  CHECK(maps >= 1);  // as it joins
+  CHECK(maps <= 2 + passed / 1s);
+}
+
+TEST_CASE("fleet watch: one look at a time, which is said while it lasts, and links behind it") {
+  RobotNow second = linked(1, "B");
+  second.linked = false;
+  Desk desk{{linked(0, "A"), second}, {}};
+  REQUIRE(desk.until([&] { return desk.robots() == 2; }));
+  desk.owner.set_idle(false);
+  for (int i = 0; i < 2; ++i) desk.ask(R"({"order":"look"})");
+  REQUIRE(desk.until([&] { return desk.state["scans"] == true; }));
+  CHECK(desk.times_heard("scan 3000") == 1);
+  CHECK_FALSE(desk.has_heard("connect 1"));
+  desk.owner.set_idle(true);
+  CHECK(desk.until([&] { return desk.has_heard("connect 1"); }));
 }
 
 TEST_CASE("fleet watch: signals are not for its thread") {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <unistd.h>
@@ -212,6 +213,25 @@ TEST_CASE("page server: response times are those of the first interface") {
   CHECK(desk.bounds()["period_ms"] == 50);
   for (int i = 0; i < 5; ++i) desk.take(1s + i * 70ms, gyroscope, {1, 2, 3, 4, 5, 6}, 1);
   CHECK(desk.measured().is_null());
+}
+
+TEST_CASE("page server: the bit rate is what was asked for, else the bus's, else the spec's") {
+  const auto rate = [](std::optional<std::uint32_t> asked, std::uint32_t of_bus) {
+    const spec::Model model;
+    ServeOptions options;
+    options.bit_rate = asked;
+    PageServer server{amiro::catalogue, model, std::move(options), {"can0", true, false}, {"can0"}, of_bus};
+    const ViewerId viewer = server.viewers().add();
+    REQUIRE(server.viewers().subscribe(viewer, {1, server.channels().of(State::bounds)}).empty());
+    server.publish_bounds(test::morning);
+    const auto state = server.viewers().next(viewer, base::Time{});
+    REQUIRE(state);
+    const std::string about = Json::parse(*state->payload)["about"];
+    return about.substr(0, about.find(','));
+  };
+  CHECK(rate({}, 0) == "At 500000 bit/s");
+  CHECK(rate({}, 125'000) == "At 125000 bit/s");
+  CHECK(rate(250'000U, 125'000) == "At 250000 bit/s");
 }
 
 TEST_CASE("page server: a log is looked at by who has subscribed to something of it") {

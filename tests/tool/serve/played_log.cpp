@@ -193,6 +193,36 @@ TEST_CASE("played log: a time bar winds it, and it goes on as fast as that says,
   CHECK(turn == 11);
 }
 
+TEST_CASE(
+    "played log: who looks at it while it is paused is given what came last, and periods are answered") {
+  Page page;
+  int turn = 0;
+  page.serve([&] {
+    Page::Said said = page.said();
+    if (turn == 0) page.ask(R"({"at_s":20,"paused":true})");
+    if (turn == 1) {
+      page.subscribe({"/gyroscope"});
+      Order newest{Order::Kind::newest, page.viewer};
+      newest.channels = {page.channel("/gyroscope")};
+      CHECK(page.server.orders().put(std::move(newest)));
+      Order periods{Order::Kind::get_parameters, page.viewer};
+      periods.names = {"/gyroscope/period_ms"};
+      periods.payload = "r";
+      CHECK(page.server.orders().put(std::move(periods)));
+    }
+    if (turn == 2) {
+      REQUIRE(said["/gyroscope"].size() == 1);
+      CHECK(said["/gyroscope"][0]["x"].get<double>() == Approx(200 * 0.0175));
+      REQUIRE(said[""].size() == 1);
+      CHECK(said[""][0]["op"] == "parameterValues");
+      CHECK(said[""][0]["id"] == "r");
+      CHECK(said[""][0]["parameters"][0]["name"] == "/gyroscope/period_ms");
+    }
+    return turn++ != 2;
+  });
+  CHECK(turn == 3);
+}
+
 TEST_CASE("played log: it plays from the moment that a viewer looks at it") {
   Page page;
   int turn = 0;

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <fstream>
 #include <memory>
 #include <poll.h>
 #include <string>
@@ -23,6 +24,7 @@
 #include "cli/serve/assets.hpp"
 #include "cli/serve/sessions.hpp"
 #include "tool/thread_signals.hpp"
+#include "unit/host/host_testing.hpp"
 
 namespace ocm::cli::serve {
 
@@ -48,11 +50,11 @@ using namespace std::string_literals;
 /// A connection to a server on this machine.
 class Client {
  public:
-  explicit Client(std::uint16_t port) {
+  explicit Client(std::uint16_t port, in_addr_t host = INADDR_LOOPBACK) {
     sockaddr_in address{};
     address.sin_family = AF_INET;
     address.sin_port = htons(port);
-    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    address.sin_addr.s_addr = htonl(host);
     REQUIRE(::connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0);
   }
   Client(const Client&) = delete;
@@ -239,6 +241,16 @@ TEST_CASE("web: each time that it is woken it sends what has come since") {
   }
 }
 
+TEST_CASE("web: more than is sent in one turn goes out all the same") {
+  Server server;
+  Client client{port_of(server.place)};
+  server.greets(client);
+  for (int i = 0; i < 60; ++i) server.viewers.tell(1, "text " + std::to_string(i));
+  (*server.web)->wake();
+  const std::string heard = client.hear("text 59");
+  for (int i = 0; i < 60; ++i) CHECK(heard.find("text " + std::to_string(i)) != std::string::npos);
+}
+
 TEST_CASE(
     "web: files go out whole, one after the other on a connection, and of HEAD only what is said of them") {
   Server server;
@@ -316,6 +328,64 @@ struct Noting final : Listener {
   }
   Viewers* viewers;
 };
+
+TEST_CASE("web: the address that it listens on is its name, too, and another one is not") {
+  Viewers viewers{1};
+  Noting noting{viewers};
+  WebOptions options;
+  options.address = "127.0.0.2";
+  const auto web = Web::open(options, viewers, noting);
+  REQUIRE(web);
+  const std::string place = place_of(**web);
+  CHECK(place.starts_with("127.0.0.2:"));
+  const auto answer = [&](const std::string& host) {
+    Client client{port_of(place), INADDR_LOOPBACK + 1};
+    client.say("GET / HTTP/1.1\r\nHost: " + host + "\r\n\r\n");
+    return client.hear("\n\r\n").substr(0, 13);
+  };
+  for (const std::string& host : {"127.0.0.2"s, place, "localhost"s, "127.0.0.1"s})
+    CHECK(answer(host) == "HTTP/1.1 200 ");
+  CHECK(answer("127.0.0.3") == "HTTP/1.1 403 ");
+}
+
+TEST_CASE("web: why it cannot serve, and what is to be done") {
+  Viewers viewers{1};
+  Noting noting{viewers};
+  const auto why = [&](const WebOptions& options) {
+    const auto web = Web::open(options, viewers, noting);
+    return web ? "it serves"s : web.error.what + "\n" + web.error.remedy;
+  };
+  WebOptions options;
+  options.address = "127.0.0.x";
+  CHECK(why(options) ==
+        "--address 127.0.0.x: not an address\n"
+        "write the address of an interface of this machine, such as 192.168.1.20");
+  options.address = "192.0.2.1";  // of no machine [RFC 5737]
+  CHECK(why(options) ==
+        "cannot listen on 192.0.2.1 port 0: Cannot assign requested address\n"
+        "--address takes an address of this machine, --port a port from 1024 on");
+  const Server other;
+  options = {};
+  options.port = port_of(other.place);
+  CHECK(why(options) == "cannot listen on 127.0.0.1 port " + std::to_string(options.port) +
+                            ": Address already in use\n"
+                            "another program listens there: --port takes another port, 0 any that is free");
+
+  const ocm::test::TemporaryDirectory folder;
+  const std::string none = folder.file("none.pem"), empty = folder.file("empty.pem");
+  std::ofstream{empty} << "no certificate\n";
+  options = {};
+  options.certificate = none;
+  options.key = empty;
+  CHECK(why(options) ==
+        "--certificate " + none + ": No such file or directory\nname a PEM file that can be read");
+  options.certificate = empty;
+  options.key = none;
+  CHECK(why(options) == "--key " + none + ": No such file or directory\nname a PEM file that can be read");
+  options.key = empty;
+  CHECK_THAT(why(options),
+             Catch::Matches("cannot serve: [^\n]*[^\n ]\nis the key of --key that of --certificate\\?"));
+}
 
 TEST_CASE("web: who shows the token may command, and to who shows another one it is said") {
   constexpr const char* other = "the token of this address is not that of this server, so you only look";

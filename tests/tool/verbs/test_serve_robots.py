@@ -139,6 +139,18 @@ class Robots(Case):
         robot = self.robot(viewer, "AVR", lambda r: r["call_back"] and r["quality"] < 0.7, "the bad link")
         self.assertEqual(robot["call_back"], "bad_link")
 
+    def test_a_world_says_where_robots_began_and_how_far_the_central_reaches(self):
+        """From 0.8 m, 0.5 m it reaches 0.4 m: less far than where the first robot began, and than the map's beginning."""
+        world = os.path.join(self.folder, "box.json")
+        with open(world, "w", encoding="utf-8") as file:
+            json.dump({"name": "box", "walls": [[[0, 0], [1.2, 0], [1.2, 1.0], [0, 1.0], [0, 0]]], "central": {"at": [0.8, 0.5], "range": 0.4},
+                       "robots": [{"name": "AVR", "model": "avr", "at": [0.4, 0.5], "heading": 0},
+                                  {"name": "Arduino", "model": "arduino", "at": [0.8, 0.5], "heading": 90}]}, file)
+        _, port, _ = self.serve("--world", world, starts=())
+        viewer = self.viewer(port, "", "/ocm/fleet")
+        self.state(viewer, lambda s: [robot["call_back"] for robot in s["robots"]] == ["far_away", None] and all(robot["at"] for robot in s["robots"]),
+                   "that the first is too far away, and the second is not")
+
     def test_where_robots_began_must_be_known(self):
         _, port, token = self.serve("--allow-commands", starts=())
         viewer = self.viewer(port, token, "/ocm/fleet")
@@ -399,7 +411,7 @@ class Robots(Case):
         self.assertNotIn("it serves the central's line", err)
         self.assertEqual(mapper.returncode, 130, out + err)
         self.assertLess(time.monotonic() - begin, 40)
-        self.state(viewer, lambda s: s["own"] and len(s["robots"]) == 2, "that it has the line")
+        self.state(viewer, lambda s: s["own"] and len(s["robots"]) == 2 and not s["map_by"], "that it has the line, and draws the map itself")
 
     def test_an_owner_that_is_killed(self):
         owner = self.start("central", "--own", "--scan", "200ms")
