@@ -61,7 +61,8 @@ class Bench {
  public:
   LineOptions options;
 
-  explicit Bench(Words answers) : server_(socket(), greeted(std::move(answers)), PlayedServer::Says::ahead) {}
+  explicit Bench(Words answers, const std::string& greeting = "ok\nrobots")
+      : server_(socket(), greeted(std::move(answers), greeting), PlayedServer::Says::ahead) {}
   /// All that it was asked, once the verb has left the line.
   const Words& heard() { return server_.end(); }
 
@@ -71,8 +72,8 @@ class Bench {
     options.path = folder_.path() + "/dongle";
     return cli::local_socket("line", cli::digits_of_path(options.path));
   }
-  static Words greeted(Words answers) {
-    answers.insert(answers.begin(), "ok\nrobots");
+  static Words greeted(Words answers, const std::string& greeting) {
+    answers.insert(answers.begin(), greeting);
     return answers;
   }
 
@@ -243,6 +244,27 @@ TEST_CASE("central line: one of several robots that cannot be reached is said, o
       "lists robots\n");
 }
 
+TEST_CASE("central line: what had failed before a verb looks for robots, or links them, is not its failure") {
+  const std::vector<RobotNow> robots{robot(0, "A")};
+  const std::string before = rows(robots, "idle\nfailed no link to B came\n");
+  {
+    Bench bench{{before, done, rows(robots)}};
+    bench.options.scan = 0ms;
+    CentralLine line{"robots", bench.options};
+    CHECK(line.scan().size() == 1);
+  }
+  for (const Words& names : {Words{"A"}, Words{}}) {
+    CAPTURE(names);
+    const Bench bench{{before, done, rows(robots)}};
+    const auto left = leaving([&] {
+      CentralLine line{"pause", bench.options};
+      CHECK(line.connect(names) == std::vector<unsigned>{0});
+    });
+    CHECK_FALSE(left.code);
+    CHECK(left.text.empty());
+  }
+}
+
 TEST_CASE("central line: a list that has changed since, or no link at all, ends the verb") {
   RobotNow other = robot(0, "A"), unlinked = robot(0, "A");
   other.address = "C0000000000F";
@@ -283,6 +305,35 @@ TEST_CASE("central line: a verb that needs it for itself, or is to record it, sa
                                  "          record there: central --own --record FILE, or map --record "
                                  "FILE\n",
                                  ::getpid()));
+}
+
+TEST_CASE("central line: it is joined where a program has it and does not end, or refuses that in words") {
+  {
+    Bench bench{{rows({robot(0, "A")})}};
+    {
+      const auto line = cli::fleet::join_line("map", bench.options);
+      REQUIRE(line);
+      CHECK(line->path() == fmt::format("robots (process {})", ::getpid()));
+      CHECK(line->robot(0).name == "A");
+    }
+    CHECK(bench.heard() == Words{"hello 1 map", "robots 0"});
+  }
+  {
+    Bench ends{{}, "wait\n"};
+    CHECK_FALSE(cli::fleet::join_line("map", ends.options));
+    CHECK(ends.heard() == Words{"hello 1 map"});
+  }
+  {
+    const Bench full{{}, "no\nit takes no more programs\nend one"};
+    const auto left = leaving([&] { static_cast<void>(cli::fleet::join_line("map", full.options)); });
+    CHECK(left.code == cli::exit_failure);
+    CHECK(left.text == "amiroctl: map: it takes no more programs\n          end one\n");
+  }
+  const TemporaryDirectory folder;
+  const Environment runtime{"XDG_RUNTIME_DIR", folder.path().c_str()};
+  LineOptions options;
+  options.path = folder.file("dongle");
+  CHECK_FALSE(cli::fleet::join_line("map", options));
 }
 
 TEST_CASE("central line: where no other program could join it is said, and the line is had all the same") {
@@ -334,9 +385,10 @@ TEST_CASE("keeper: all robots that the central finds in three seconds are linked
     Words asked;
   };
   const Row cases[] = {
-      {{rows(robots), done, done, rows(robots, "waits\n"), rows(robots, "idle\nfailed no link to B came\n")},
+      {{rows(robots), done, done, rows(robots, "waits\n"), rows(robots, "waits\n"), rows(robots, "waits\n"),
+        rows(robots, "idle\nfailed no link to B came\n")},
        "no link to B came\n",
-       {"connect 0", "connect 5", "robots 0", "robots 0"}},
+       {"connect 0", "connect 5", "robots 0", "robots 0", "robots 0", "robots 0"}},
       {{rows({})}, "no robots yet: `amiroctl robots --scan 3s` looks again\n", {}},
   };
   for (const Row& row : cases) {

@@ -43,7 +43,10 @@ TEST_CASE("joined line: robots come in as many answers as it takes") {
   CHECK(line.peers()[1].index == 5);
   CHECK(line.robot(0).name == "A");
   CHECK(line.robot(5).linked);
-  CHECK(line.robot(1).lost);
+  const RobotNow gone = line.robot(1);  // it is not on the list
+  CHECK(gone.lost);
+  CHECK(gone.index == 1);
+  CHECK(gone.name == "robot 1");
   CHECK_FALSE(line.idle());
   CHECK(line.take_failed() == std::vector<std::string>{"no link to 5"});
   CHECK(owner.heard() == std::vector<std::string>{"hello 1 goto", "robots 0", "robots 5"});

@@ -234,6 +234,33 @@ TEST_CASE(
   CHECK(state(log) == "moving");
 }
 
+TEST_CASE(
+    "line replay: an update that comes at once with its idle does not show that it moves, the next one "
+    "does") {
+  const auto state = [](const Log& log) {
+    LineReplay replay{log.read, known()};
+    replay.go_to(1h);
+    return std::string{cli::fleet::state_of(replay.robots()[0])};
+  };
+  Log log;
+  log.robot(0, handshake);
+  log.robot(0, update(0, 0, 0));
+  log.robot(0, "{S,IDL}\n" + update(40, 0, 0));
+  CHECK(state(log) == "idle");
+  log.robot(0, update(40, 0, 0));
+  CHECK(state(log) == "moving");
+}
+
+TEST_CASE("line replay: no beam of a robot ends at the robot itself") {
+  Log log;
+  log.robot(0, handshake);
+  log.robot(0, "{U,0,0,0,0,8,40,40,40}\n");
+  LineReplay replay{log.read, known()};
+  replay.go_to(1h);
+  CHECK(replay.drawing().map().counters().near == 1);
+  CHECK(replay.drawing().map().counters().on_robots == 0);
+}
+
 TEST_CASE("line replay: half-way to its beginning it goes on; what was before it began again is forgotten") {
   Log half;
   half.robot(0, handshake);

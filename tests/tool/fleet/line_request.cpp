@@ -22,6 +22,13 @@ TEST_CASE("line request: each one") {
   REQUIRE(scan);
   CHECK(scan->kind == Kind::scan);
   CHECK(scan->time == 60s);
+  const auto list = parse_line_request("scan 0");  // what is known
+  REQUIRE(list);
+  CHECK(list->time == 0s);
+  const auto back = parse_line_request("go 0 360 -32768");
+  REQUIRE(back);
+  CHECK(back->robot == 0);
+  CHECK(back->set_point == ocm::mapper::link::SetPoint{360, -32768});
   const auto map = parse_line_request("map svg");
   REQUIRE(map);
   CHECK(map->kind == Kind::map);
@@ -30,6 +37,10 @@ TEST_CASE("line request: each one") {
   REQUIRE(more);
   CHECK(more->kind == Kind::more);
   CHECK(more->offset == 48000);
+  REQUIRE(parse_line_request("more 0"));
+  CHECK(parse_line_request("more 0")->offset == 0);
+  for (const char* const form : {"svg", "png", "pdf", "pgm", "yaml", "grid"})
+    CHECK(parse_line_request(std::string{"map "} + form));
   REQUIRE(parse_line_request("robots"));
   CHECK(parse_line_request("robots")->robot == 0);
   CHECK(parse_line_request("robots 127")->robot == 127);

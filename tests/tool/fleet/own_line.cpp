@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 #include <chrono>
+#include <cstddef>
 #include <cstdlib>
 #include <fcntl.h>
 #include <string>
@@ -13,12 +14,14 @@
 #include <thread>
 #include <unistd.h>
 #include <utility>
+#include <vector>
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
 
 #include "ocm/host/descriptor.hpp"
 
+#include "cli/fleet/line_time.hpp"
 #include "cli/shared/messages.hpp"
 #include "tests/tool/captured.hpp"
 
@@ -74,6 +77,55 @@ TEST_CASE("own line: a line that is gone is said once, whether it is noticed by 
               "again and restart\n",
               path));
   }
+}
+
+TEST_CASE(
+    "own line: a robot is this program's from its set point or its turn on; to ask for its compass is no "
+    "order") {
+  host::Descriptor dongle = silent_dongle();
+  auto port = transport::SerialPort::open(::ptsname(dongle.get()));
+  REQUIRE(port);
+  static_cast<void>(leaving([&] {
+    cli::fleet::OwnLine line{
+        "robots", cli::fleet::Dongle{std::move(*port), mapper::server::Dialect::words, {}}, {}, nullptr};
+    CHECK_FALSE(line.go(3, {90, 50}));
+    CHECK(line.robot(3).order == 1);
+    CHECK(line.is_ours(3));
+    CHECK_FALSE(line.calibrate(4, false));
+    CHECK(line.robot(4).order == 2);
+    CHECK(line.is_ours(4));
+    CHECK_FALSE(line.calibrate(4, true));
+    CHECK(line.robot(4).order == 2);
+    CHECK(line.is_ours(4));
+    CHECK_FALSE(line.owner().go(3, {0, 10}, cli::fleet::line_time()));  // not said by the line
+    CHECK_FALSE(line.is_ours(3));
+    CHECK(line.is_charge(3));
+    dongle.reset();  // or its last answer is waited for
+  }));
+}
+
+TEST_CASE(
+    "own line: what its dongle has said before is heard, and who listens is called no more while it is "
+    "left") {
+  using mapper::link::Kind;
+  const host::Descriptor dongle = silent_dongle();
+  auto port = transport::SerialPort::open(::ptsname(dongle.get()));
+  REQUIRE(port);
+  const std::string idle = "[3]:A:{S,IDL}\n";
+  std::vector<std::pair<std::size_t, Kind>> heard;
+  {
+    cli::fleet::OwnLine line{
+        "robots", cli::fleet::Dongle{std::move(*port), mapper::server::Dialect::words, idle}, {}, nullptr};
+    line.on_heard([&heard](std::size_t robot, Kind kind) { heard.emplace_back(robot, kind); });
+    line.exchange();
+    CHECK(line.robot(3).linked);
+    // It is left as soon as that is answered, behind a robot's word.
+    const std::string last = idle + "\nfound 0\n";
+    REQUIRE(::write(dongle.get(), last.data(), last.size()) == static_cast<ssize_t>(last.size()));
+  }
+  REQUIRE(heard.size() == 1);
+  CHECK(heard[0].first == 3);
+  CHECK(heard[0].second == Kind::idle);
 }
 
 /// A central that has much to pass on before it obeys: behind `stop` so many pieces of one byte, each once

@@ -310,6 +310,23 @@ TEST_CASE("owner: a robot that its program has left may be sent by any other, wh
   CHECK(bench.owner->go(0, {0, 10}, bench.now));  // that one drives it now: refused
 }
 
+TEST_CASE("owner: a robot whose program has ended is being stopped, and may be sent by any other at once") {
+  Bench bench;
+  bench.central.add("AVR");
+  static_cast<void>(bench.ask("goto", "scan 300"));
+  bench.pass(1s);
+  static_cast<void>(bench.ask("goto", "connect 0"));
+  bench.pass(8s);
+  CHECK(bench.ask("goto", "go 0 0 100") == "ok\n1");
+  bench.leaves("goto");
+  bench.pass(20ms);
+  const auto robot = bench.owner->robot(0);
+  CHECK(robot.order == 2);
+  CHECK(robot.by == fmt::format("map (process {0}): goto (process {0}) has ended", ::getpid()));
+  CHECK(robot.busy());
+  CHECK(bench.ask("other", "go 0 0 10") == "ok\n3");
+}
+
 TEST_CASE("owner: who joined is at work for two seconds behind its last word") {
   Bench bench;
   static_cast<void>(bench.ask("goto", "robots"));

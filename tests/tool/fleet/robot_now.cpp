@@ -1,9 +1,12 @@
 #include "cli/fleet/robot_now.hpp"
 
 #include <chrono>
+#include <cstdint>
 #include <string>
 
 #include <catch2/catch.hpp>
+
+#include "ocm/mapper/link/packed.hpp"
 
 namespace fleet_robot_now_test {
 
@@ -249,6 +252,23 @@ TEST_CASE("robot now: pieces are torn sentences, and what is left over of others
   CHECK(text.stray() > 0);
   CHECK(robot.torn == text.faults().total());
   CHECK(robot.pieces == text.faults().total() + text.stray());
+}
+
+TEST_CASE("robot now: packed updates that never came are pieces, and tear no sentence") {
+  cognitive::Fleet fleet;
+  const base::Time now{1s};
+  fleet.linked(0, "A", now);
+  for (const std::uint8_t sequence : {std::uint8_t{0}, std::uint8_t{5}}) {
+    const mapper::link::Packet packet = *mapper::link::pack({sequence, {}});
+    std::string said = "[0]:A:";
+    for (const std::uint8_t byte : packet.bytes()) said += static_cast<char>(byte);
+    fleet.feed(said, now);
+  }
+  const auto& ear = fleet.ear(0);
+  CHECK(ear.packed().faults().total() == 4);
+  const RobotNow robot = cli::fleet::robot_now(fleet, {0, "C0", "A", true});
+  CHECK(robot.torn == 0);
+  CHECK(robot.pieces == ear.text().stray() + 4);
 }
 
 }  // namespace fleet_robot_now_test

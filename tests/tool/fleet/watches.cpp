@@ -1,5 +1,6 @@
 // What watches robots behind a central: their links, their pauses, and that they stand at the end.
 #include <chrono>
+#include <cstdint>
 #include <string>
 #include <unistd.h>
 
@@ -162,6 +163,37 @@ TEST_CASE(
     CHECK_FALSE(watch.step(line, robot, true));
     CHECK(line.take_told() == "go 3 0 0\ngo 3 180 100\n");
   }
+}
+
+TEST_CASE(
+    "link watch: six centimetres are not near its home, and where it stands next with a good link is its "
+    "home") {
+  {
+    PlayedLine line;
+    auto& robot = standing(line);
+    LinkWatch watch;
+    CHECK_FALSE(watch.step(line, robot, true));
+    drives(robot, 6, 0, 0);
+    robot.advice = Advice::bad_link;
+    CHECK(watch.step(line, robot, true));
+    stands(robot);
+    CHECK_FALSE(watch.step(line, robot, true));
+    CHECK(watch.phase() == Phase::returning);
+    CHECK(line.take_told() == "go 3 0 0\ngo 3 180 6\n");
+  }
+  PlayedLine line;
+  auto& robot = standing(line);
+  LinkWatch watch;
+  for (const std::int16_t x : {std::int16_t{0}, std::int16_t{50}}) {
+    robot.update->x = x;
+    CHECK_FALSE(watch.step(line, robot, true));
+  }
+  drives(robot, 100, 0, 0);
+  robot.advice = Advice::bad_link;
+  CHECK(watch.step(line, robot, true));
+  stands(robot);
+  CHECK_FALSE(watch.step(line, robot, true));
+  CHECK(line.take_told() == "go 3 0 0\ngo 3 180 50\n");
 }
 
 TEST_CASE("link watch: it calls back only what drives, what it may, and what it can") {

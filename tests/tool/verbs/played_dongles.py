@@ -80,7 +80,10 @@ class BaseFirmware(Central):
 
 
 class Thesis(Central):
-    """The changed one: start, list, stop, conn i, switch i, drop i, *; what it answers is not known but for list's lines."""
+    """The changed one: start, list, stop, conn i, switch i, drop i, *; what it answers is not known but for list's lines. Asked what it is
+    it says no more than has to be a line: three letters, with the first and the last that are printed."""
+
+    line_of_three = " a~\r\n"
 
     def execute(self, line):
         self.commands.append(line)
@@ -92,7 +95,7 @@ class Thesis(Central):
         if line == "stop":
             self.find()
             self.scanning = False
-            return self.write(f"{len(self.listed)} device(s)\r\n")
+            return self.write(self.line_of_three)
         if line == "list":
             return self.write("".join(f"{i}:C0000000000{i}:{robot.name}\r\n" for i, robot in enumerate(self.listed)))
         if word in ("conn", "switch", "drop") and number.isdigit() and int(number) < len(self.listed):
@@ -107,7 +110,7 @@ class Thesis(Central):
                     self.commands.append("HANGS")  # a wrong order
                 robot.linked = robot.reachable
             return self.write("Data mode\r\n")
-        return self.write("Unknown command\r\n")
+        return self.write(self.line_of_three)
 
     def feed(self, char):
         if self.target is not None and char == "*":

@@ -166,6 +166,10 @@ class Dongles(Case):
         for option in ("--flow", "--dongle"):
             _, err = self.tool("robots", option, "perhaps", code=2)
             self.assertIn(option, err)
+        for baud in ("0", "4000001"):
+            self.tool("robots", "--baud", baud, code=2)
+        _, err = self.tool("robots", "--baud", "1", code=1)
+        self.assertIn("no speed 1", err)
 
 
 if __name__ == "__main__":

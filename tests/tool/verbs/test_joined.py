@@ -99,6 +99,13 @@ class TogetherOnALine(Joined):
         self.interrupt(owner)
         self.assertEqual(glob.glob(os.path.join(self.folder, "ocm", "line-*.sock")), [])
 
+    def test_a_robot_that_cannot_be_reached(self):
+        self.arduino.reachable = False
+        self.own()
+        out, err = self.tool("goto", "Arduino", "0", "5", code=1)
+        self.assertEqual((out, err), ("", "amiroctl: goto: the central refuses Arduino: no link to 1\n"
+                                          "          is it near enough? `amiroctl robots` lists robots\n"))
+
     def test_programs_that_start_together(self):
         tools = [self.start("robots", "--scan", "200ms", "--listen", "3s") for _ in range(6)]
         for tool in tools:
@@ -638,7 +645,7 @@ class BesideAMap(Case):
         self.assertEqual(watched.keys(), {"watched", "seconds", "drawn"})
         self.assertGreaterEqual(watched["seconds"], 3)
         self.assertLessEqual(watched["seconds"], time.monotonic() - begin)
-        self.assertIn(watched["drawn"], range(1, int(watched["seconds"] / 2) + 2))  # each 2 s, from the beginning
+        self.assertIn(watched["drawn"], range(2, int(watched["seconds"] / 2) + 2))  # each 2 s, from the beginning
 
     def test_watched_it_grows(self):
         seen = self.path("seen.pgm")
@@ -666,7 +673,11 @@ class BesideAMap(Case):
         self.assertRegex(out, r"what map \(process \d+\) drew in \d+ s, drawn \d+ times\n")
         self.assertRegex(err, r"map \(process \d+\) (has ended|is gone)")
         with open(self.path("seen.svg"), encoding="utf-8") as file:
-            self.assertIn("map by AVR, Arduino", file.read())
+            drawn = file.read()
+        self.assertIn("map by AVR, Arduino", drawn)
+        took = re.search(r"(\d+) s, \d+\.\d\d m", drawn)  # until it was drawn
+        self.assertTrue(took, drawn[:2000])
+        self.assertIn(int(took[1]), range(1, 1000))
 
 
 if __name__ == "__main__":
