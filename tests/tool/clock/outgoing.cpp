@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "ocm/can/any_text.hpp"
 #include "ocm/can/text.hpp"
 
 #include "cli/shared/messages.hpp"
@@ -95,8 +96,25 @@ TEST_CASE("outgoing: what is no frame is none") {
   can::Frame wrong = frame("205#00");
   wrong.id = 0x800;
   const Left end = left(world, [&] { outgoing.send(wrong); });
-  CHECK_THAT(end.text, Catch::Contains("cannot be sent: "));
+  CHECK_THAT(end.text,
+             Catch::EndsWith(" cannot be sent: identifier out of range for its format\n"
+                             "          only data and remote frames with a valid identifier can, of "
+                             "up to 8 bytes; CAN FD of up to 64\n"));
   CHECK(end.after < 10ms);
+}
+
+TEST_CASE("outgoing: of a frame of CAN FD it is said what keeps it from the bus") {
+  World world{1};
+  PlayedBus bus{world, {}};
+  Outgoing outgoing{bus, "send"};
+  const auto frame_of_fd = can::parse_any_frame("123##10011");
+  REQUIRE(frame_of_fd.ok());
+  const Left end = left(world, [&] { outgoing.send(*frame_of_fd); });
+  CHECK_THAT(end.text, Catch::StartsWith("amiroctl: send: 123##1"));
+  CHECK_THAT(end.text, Catch::EndsWith(" is a CAN FD frame, and 'can0' carries no CAN FD frames\n"
+                                       "          use a CAN interface in FD mode, or the simulated bus\n"));
+  CHECK(end.after < 10ms);
+  CHECK(bus.sent().empty());
 }
 
 TEST_CASE("outgoing: how many frames did not leave, after half a second in which none did") {

@@ -125,4 +125,19 @@ TEST_CASE("arguments: an option at the end has no value, and words without a ver
   CHECK(without_verb.said == "amiroctl: missing VERB\n          begin with go\n");
 }
 
+TEST_CASE(
+    "arguments: of an option that may stand without a value a config file has the value, whatever it is") {
+  for (const std::string text : {"off", "no", "0", "-1", "LINK"}) {
+    CAPTURE(text);
+    Program program{"amiroctl", "a program", "1", "", "begin with go"};
+    std::string link;
+    const cli::Option option =
+        program.root().add_option("--pty", link, "a pseudo terminal").expected(0, 1).type_name("[LINK]");
+    CHECK_FALSE(option.give("pty", {text}).has_value());
+    CHECK(option.count() == 1);
+    CHECK(option.texts() == Words{text});
+    CHECK(link == text);
+  }
+}
+
 }  // namespace tool_shared_arguments_test

@@ -10,9 +10,12 @@
 
 #include "ocm/host/descriptor.hpp"
 #include "ocm/host/local_socket.hpp"
+#include "ocm/transport/interfaces.hpp"
 #include "ocm/transport/pty.hpp"
 #include "ocm/transport/virtual_bus_protocol.hpp"
 
+#include "cli/shared/messages.hpp"
+#include "tests/tool/captured.hpp"
 #include "unit/host/host_testing.hpp"
 
 namespace tool_shared_buses_test {
@@ -52,6 +55,32 @@ TEST_CASE("buses: where mappers run and no simulator, that is said of the usual 
   CHECK_THAT(said_of("sim"), Catch::StartsWith(none(usual) + "; mappers run"));
   CHECK(says_that_mappers_run());
   CHECK(said_of("sim:" + other) == of_other);
+}
+
+TEST_CASE("buses: where none is chosen and there is none, it is said whether mappers run") {
+  for (const auto& interface : transport::can_interfaces())
+    if (interface.up) {
+      WARN("this machine has a CAN interface that is up");
+      return;
+    }
+  const Place place;
+  const auto left = [] { return test::leaving([] { static_cast<void>(cli::only_bus()); }); };
+  const auto none = left();
+  CHECK(none.code == cli::exit_failure);
+  CHECK(
+      none.text ==
+      "amiroctl: no bus: no CAN interface is up and no simulator runs\n"
+      "          start a simulated robot with `amiroctl sim`, the messages of a DBC file with `amiroctl sim "
+      "--spec FILE`, or bring an interface up: sudo ip link set can0 up type can bitrate 500000\n");
+  const auto central = Pty::open(transport::central_line());
+  REQUIRE(central);
+  const auto mappers = left();
+  CHECK(mappers.code == cli::exit_failure);
+  CHECK(
+      mappers.text ==
+      "amiroctl: no bus: mappers run, but have no CAN bus, and no CAN interface is up\n"
+      "          mappers take `amiroctl robots`, `goto`, `pause` and `map`; an AMiRo with a bus is `amiroctl "
+      "sim`, which may run beside them\n");
 }
 
 TEST_CASE("buses: a robot's own line shows that mappers run, as long as a program has it") {

@@ -89,6 +89,16 @@ TEST_CASE("a help's description goes below where beside it there are fewer than 
         "      asks a board");
 }
 
+TEST_CASE("a line of a help that just fits stays as it is, whatever room its description has", "[folding]") {
+  for (const std::string& line :
+       {std::string{"  --json                      an object"}, std::string(30, ' ') + "of an option",
+        std::string{"Usage: amiroctl list"}}) {
+    CAPTURE(line);
+    CHECK(folded_help(line, line.size()) == line);
+    CHECK(folded_help(line, line.size() - 1) != line);
+  }
+}
+
 TEST_CASE("only an option that fills its column has one blank before its description", "[folding]") {
   // Of other lines the words behind the column belong to what is described.
   CHECK(folded_help("  a word that is as long as it is said to be in a help", 40) ==

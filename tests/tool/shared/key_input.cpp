@@ -43,16 +43,17 @@ std::string pressed(KeyInput& keys) {
   return std::string{*text};
 }
 
+termios settings_of(const PseudoTerminal& terminal) {
+  termios now{};
+  REQUIRE(::tcgetattr(terminal.descriptor(), &now) == 0);
+  return now;
+}
+
 TEST_CASE("key input: keys come one by one, and the terminal is set back") {
   const PseudoTerminal terminal;
   const AsInput input{terminal.descriptor()};
-  const auto settings = [&terminal] {
-    termios now{};
-    REQUIRE(::tcgetattr(terminal.descriptor(), &now) == 0);
-    return now;
-  };
-  const auto modes = [&settings] { return settings().c_lflag & tcflag_t{ICANON | ECHO | ISIG}; };
-  const termios before = settings();
+  const auto modes = [&terminal] { return settings_of(terminal).c_lflag & tcflag_t{ICANON | ECHO | ISIG}; };
+  const termios before = settings_of(terminal);
   REQUIRE(modes() == tcflag_t{ICANON | ECHO | ISIG});
   {
     KeyInput keys;
@@ -74,6 +75,22 @@ TEST_CASE("key input: keys come one by one, and the terminal is set back") {
   CHECK(modes() == tcflag_t{ICANON | ECHO | ISIG});
   CHECK(settings().c_cc[VMIN] == before.c_cc[VMIN]);
   CHECK(settings().c_cc[VTIME] == before.c_cc[VTIME]);
+}
+
+TEST_CASE("key input: the terminal waits for no key and for no time, whatever it did before") {
+  const PseudoTerminal terminal;
+  const AsInput input{terminal.descriptor()};
+  termios before = settings_of(terminal);
+  before.c_cc[VMIN] = 3;
+  before.c_cc[VTIME] = 7;
+  REQUIRE(::tcsetattr(terminal.descriptor(), TCSANOW, &before) == 0);
+  {
+    const KeyInput keys;
+    CHECK(int{settings_of(terminal).c_cc[VMIN]} == 0);
+    CHECK(int{settings_of(terminal).c_cc[VTIME]} == 0);
+  }
+  CHECK(int{settings_of(terminal).c_cc[VMIN]} == 3);
+  CHECK(int{settings_of(terminal).c_cc[VTIME]} == 7);
 }
 
 TEST_CASE("key input: a pipe is no terminal") {

@@ -172,6 +172,17 @@ TEST_CASE("local link: one that does not greet, or turns this program away") {
   CHECK(link.error.remedy == "end some");
 }
 
+TEST_CASE("local link: one whose queue is full of programs that it does not take is said") {
+  const Folder folder;
+  const PlayedServer stopped{folder.file("stopped.sock"), {}};  // it has room for two
+  for (int i = 0; i < 3; ++i)
+    static_cast<void>(LocalLink::connect(folder.file("stopped.sock"), "the thing", "goto", 1ms));
+  const auto link = LocalLink::connect(folder.file("stopped.sock"), "the thing", "goto", 30s);
+  REQUIRE_FALSE(link);
+  CHECK(link.error.what == "the thing takes no more programs");
+  CHECK(link.error.remedy == "is it stopped? `fg` lets it go on");
+}
+
 TEST_CASE("local link: names of sockets") {
   const Folder folder;
   CHECK(cli::local_socket_in("/run", "operator", "can0") == "/run/operator-can0.sock");

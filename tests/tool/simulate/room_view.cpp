@@ -6,6 +6,7 @@
 #include <limits>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include <catch2/catch.hpp>
 
@@ -238,6 +239,50 @@ TEST_CASE("room view: trails have an end, and a robot at rest adds nothing to it
   CHECK(trails.of("AVR").size() == Trails::most);
   CHECK(trails.of("AVR").back().x == Approx(world.robots[0].centre.x));
   CHECK(trails.of("a_robot_with_a_long_name").size() == 1);
+}
+
+TEST_CASE("room view: a trail goes on where the robot has come two centimetres further, and not before") {
+  Trails trails;
+  sim::SeenWorld world = two_mappers();
+  world.robots[0].centre = {0, 0};
+  trails.take(world);
+  world.robots[0].centre.x = Trails::apart_m;
+  trails.take(world);
+  CHECK(trails.of("AVR").size() == 2);
+  world.robots[0].centre.x = 2 * Trails::apart_m - 0.0001;
+  trails.take(world);
+  CHECK(trails.of("AVR").size() == 2);
+}
+
+TEST_CASE("room view: a key is named where its words have room, up to the last column") {
+  const sim::SeenWorld world = two_mappers();
+  const auto foot = [&world](std::size_t columns) {
+    const std::string text = text_of(draw_room(world, {}, {}, {columns, 24}, false));
+    return text.substr(text.rfind('\n', text.size() - 2) + 1);
+  };
+  CHECK(foot(5) == "\n");
+  CHECK(foot(6) == "q quit\n");
+  CHECK(foot(14) == "q quit\n");
+  CHECK(foot(15) == "q quit  b beams\n");
+  CHECK(foot(27) == "q quit  b beams\n");
+  CHECK(foot(28) == "q quit  b beams  t new trail\n");
+  CHECK(foot(43) == "q quit  b beams  t new trail\n");
+  CHECK(foot(44) == "q quit  b beams  t new trail  Tab next robot\n");
+}
+
+TEST_CASE("room view: below the room it is said how near the nearest thing is that a beam meets") {
+  sim::SeenWorld world = two_mappers();
+  auto& beams = world.robots[0].beams;
+  const auto says = [&world](const char* line) {
+    return text_of(draw_room(world, {}, {}, {40, 20}, true)).find(line) != std::string::npos;
+  };
+  // The shortest of them meets nothing.
+  beams = {{{0.6, 0.5}, {0.7, 0.5}, false}, {{0.5, 0.6}, {0.5, 1.0}, true}, {{0.4, 0.5}, {0.1, 0.5}, true}};
+  CHECK(says("\nlights g.  nearest 0.30 m\n"));
+  std::swap(beams[1], beams[2]);
+  CHECK(says("\nlights g.  nearest 0.30 m\n"));
+  for (sim::Beam& beam : beams) beam.meets = false;
+  CHECK(says("\nlights g.\n"));
 }
 
 TEST_CASE("room view: what is in a world decides what there is room for") {

@@ -101,6 +101,9 @@ class SimMessages(Case):
             self.assertIn("simulated AMiRo on --bus sim", said)
             self.assertIn(f", {rate} bit/s", said)
             self.interrupt(sim)
+        _, err = self.run_tool("--spec", path, "--bus", "vcan77", "sim", code=2)
+        self.assertIn("amiroctl: sim: a robot and messages with --bus vcan77\n          both play on a virtual bus only: leave --bus out, or one of "
+                      "the specs\n", err)
 
     def test_a_closed_terminal_ends_it_as_ctrl_c_does(self):
         sim, _ = self.play()
