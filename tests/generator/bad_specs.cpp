@@ -15,6 +15,7 @@
 #include <nlohmann/json.hpp>
 
 #include "generator/spec/file.hpp"
+#include "generator/spec/json.hpp"
 #include "generator/spec/reader.hpp"
 #include "generator/spec/spec.hpp"
 
@@ -352,6 +353,112 @@ TEST_CASE("a spec has as many topics as there are numbers, and no more") {
         std::vector<std::string>{"f:2: /topics: 257 topics; at most 256: a topic's number has 8 bits"});
 }
 
+TEST_CASE("of a number that is taken, the first that is free is named, up to the last one") {
+  const auto problems = [](int count) {
+    return printed(
+        ocm::spec::parse(R"({"robot": "r", "namespace": "r", "bus": {"bit_rate": 500000, "source": "s"},
+      "boards": [{"name": "b", "mcu": "m", "source": "s"}],
+      "topics": [{"name": "t", "id": 0, "board": "b", "source": "s", "frames": [
+        {"name": "one", "id": 1, "count": )" +
+                             std::to_string(count) + R"(, "dlc": 0, "fields": []}]},
+       {"name": "u", "id": 1, "board": "b", "source": "s", "frames": [{"id": 1, "dlc": 0, "fields": []}]}]})",
+                         "f")
+            .problems);
+  };
+  const auto taken = [](const std::string& free) {
+    return std::vector<std::string>{
+        "f:5: /topics/1/frames/0/id: id 0x01 is taken (see /topics/0/frames/0/id); a number that no other of "
+        "the sensors' frames has, such as " +
+        free};
+  };
+  CHECK(problems(3) == taken("0x04"));
+  CHECK(problems(253) == taken("0xFE"));
+  CHECK(problems(254) == taken("0xFF"));
+}
+
+TEST_CASE("the sensors of a ring may lie at any distance above zero") {
+  using Pointer = nlohmann::json::json_pointer;
+  auto spec = nlohmann::json::parse(read("tests/generator/golden/whole.json"));
+  const Pointer radius{"/topics/5/geometry/radius"};
+  REQUIRE(spec.at(radius).is_number());
+  const std::pair<double, ocm::base::Decimal> rows[] = {{1, {1, 0}}, {0.1, {1, -1}}, {0.01, {1, -2}}};
+  for (const auto& [metres, expected] : rows) {
+    CAPTURE(metres);
+    spec.at(radius) = metres;
+    const auto loaded = ocm::spec::parse(spec.dump(1), "f");
+    CHECK(printed(loaded.problems).empty());
+    REQUIRE(loaded.spec != nullptr);
+    const auto& geometry = loaded.spec->model().topics.at(5).geometry;
+    REQUIRE(geometry.has_value());
+    CHECK(geometry->radius == expected);
+  }
+}
+
+TEST_CASE("a field of the other byte order ends at the last bit of the frame, the lowest of its byte") {
+  const auto problems = [](const std::string& type) {
+    return printed(ocm::spec::parse(good_with(R"("bit": 0, "type": "u12")",
+                                              R"("bit": 60, "byte_order": "big", "type": ")" + type + '"'),
+                                    "f")
+                       .problems);
+  };
+  CHECK(problems("u5").empty());
+  CHECK(problems("u6") ==
+        std::vector<std::string>{
+            "f:28: /topics/1/frames/1/fields/0/bit: a field of 6 bits that begins here does not end within 8 "
+            "bytes; at most 5 bits, or an earlier beginning"});
+}
+
+TEST_CASE("a line of text has no control character, and all else but a backslash") {
+  const auto problems = [](const std::string& robot) {
+    return printed(
+        ocm::spec::parse(good_with(R"("robot": "Pair")", R"("robot": ")" + robot + '"'), "f").problems);
+  };
+  for (const char* good : {"a b", "~", "!", "[]^", "\xC3\xA4"}) {
+    CAPTURE(good);
+    CHECK(problems(good).empty());
+  }
+  for (const char* bad : {"a\\u0001b", "a\\u001fb", "a\x7F"}) {
+    CAPTURE(bad);
+    CHECK(problems(bad) ==
+          std::vector<std::string>{
+              "f:2: /robot: the text has a line break or another control character; one line of plain text"});
+  }
+}
+
+TEST_CASE("of a number that cannot be forty characters are shown") {
+  const std::string zeros(60, '0');
+  const std::string shown(38, '0');
+  const auto dlc = [](const std::string& number) {
+    return printed(ocm::spec::parse(good_with(R"("dlc": 6)", R"("dlc": )" + number), "f").problems);
+  };
+  using Lines = std::vector<std::string>;
+  const std::string whole = "; a whole number from 0 to 8";
+  CHECK(dlc("9." + zeros) == Lines{"f:14: /topics/0/frames/0/dlc: 9." + shown + " is out of range" + whole});
+  CHECK(dlc("6.5" + zeros) ==
+        Lines{"f:14: /topics/0/frames/0/dlc: 6.5" + shown.substr(1) + " is not whole" + whole});
+  const std::string digits = "at most 18 digits, and an exponent of at most 100";
+  CHECK(dlc("6." + std::string(60, '1')) ==
+        Lines{"f:14: /topics/0/frames/0/dlc: number 6." + std::string(38, '1') +
+              " has more digits than can be kept exactly; " + digits});
+  const auto too_large =
+      ocm::spec::parse(good_with(R"("dlc": 6)", R"("dlc": 66)" + zeros + "e999"), "f").problems;
+  REQUIRE(too_large.size() == 1);
+  CHECK(too_large[0].what == "number 66" + shown + " is too large");
+  CHECK(too_large[0].remedy == digits);
+}
+
+TEST_CASE("problems are in the order of their lines, those of one line as they were found") {
+  std::vector<ocm::spec::Problem> problems;
+  for (const char* place : {"f1:100: /a", "f1:99: /b", "f1:20: /c", "f1:19: /d", "f1:19", "f1:9:70",
+                            "f1:10:1", "f1:9: /e", "f1", "f1:1000: /"})
+    problems.push_back({place, "what", "remedy"});
+  ocm::spec::sort_by_line(problems, "f1");
+  std::vector<std::string> places;
+  for (const auto& problem : problems) places.push_back(problem.place);
+  CHECK(places == std::vector<std::string>{"f1", "f1:9:70", "f1:9: /e", "f1:10:1", "f1:19: /d", "f1:19",
+                                           "f1:20: /c", "f1:99: /b", "f1:100: /a", "f1:1000: /"});
+}
+
 TEST_CASE("an id has sixteen digits at most") {
   const auto problems = [](const std::string& id) {
     return printed(ocm::spec::parse(good_with(R"("id": "0x08")", "\"id\": \"" + id + '"'), "f").problems);
@@ -503,8 +610,14 @@ TEST_CASE("what only the schema sees is reported with its place, and with what t
 
 TEST_CASE("a file that is not there, or is no file") {
   const auto only = [](const std::filesystem::path& file) { return ocm::spec::load(file).problems.at(0); };
-  CHECK(only("/nonexistent/spec.json").what == "there is no such file");
-  CHECK(only("/").what == "it is a folder");
+  using ocm::spec::Problem;
+  const std::string path = "the path of a spec, such as spec/topics.json";
+  CHECK(only("/nonexistent/spec.json") == Problem{"/nonexistent/spec.json", "there is no such file", path});
+  CHECK(only("/") == Problem{"/", "it is a folder", "the path of the spec within it"});
+  CHECK(only("/dev/null/spec.json") == Problem{"/dev/null/spec.json", "Not a directory", path});
+  const std::string longest(300, 'a');
+  CHECK(only(longest) == Problem{longest, "File name too long", path});
+  CHECK(only("/proc/self/mem") == Problem{"/proc/self/mem", "it cannot be read", "a readable file"});
   CHECK(only("/dev/zero").what == "the file is larger than 10000000 bytes");
   CHECK(only("/dev/null").what == "the file is empty");
 }

@@ -76,8 +76,8 @@ TEST_CASE("dbc: every other byte of code page 1252 is that character, there and 
   CHECK(dbc::to_utf8("\xA0") == "\xC2\xA0");
   CHECK(dbc::to_utf8("\xFF") == "\xC3\xBF");
   CHECK(dbc::has_cp1252(""));
-  // What it does not have: what stands for nothing, U+0081, U+0100, a Chinese character.
-  for (const char* text : {"a\xEF\xBF\xBD", "\xC2\x81", "\xC4\x80",
+  // What it does not have: what stands for nothing, U+0080, U+0081, U+009F, U+0100, a Chinese character.
+  for (const char* text : {"a\xEF\xBF\xBD", "\xC2\x80", "\xC2\x81", "\xC2\x9F", "\xC4\x80",
                            "\xE4\xB8\xAD"
                            "b"}) {
     CAPTURE(text);
@@ -155,6 +155,20 @@ TEST_CASE("dbc: identifiers of 11 and 29 bits") {
   CHECK(message("BO_ 3758096385 A: 8 X\n",
                 {"1: the identifier 3758096385 of A has more than 29 bits; read as 1"})
             .id == 1);
+  // Either of the two bits above the 29 is one too many.
+  for (const char* id : {"2684354561", "1073741825", "536870913"}) {
+    CAPTURE(id);
+    CHECK(message("BO_ " + std::string{id} + " A: 8 X\n",
+                  {"1: the identifier " + std::string{id} + " of A has more than 29 bits; read as 1"})
+              .id == 1);
+  }
+  // Both of one message are told in the order in which they are found.
+  CHECK(message(
+            "BO_ 1610614784 A: 8 X\n",
+            {"1: the identifier 1610614784 of A has more than 29 bits; read as 2048",
+             "1: the identifier 1610614784 of A has more than 11 bits, and no flag that says so; read as 29 "
+             "bits, which are written 2147485696"})
+            .id == 2048);
 }
 
 TEST_CASE("dbc: signals without a message are kept apart, and are no message") {
@@ -181,6 +195,29 @@ TEST_CASE("dbc: numbers as people write them") {
   CHECK(scale("1.84467e+19") == base::Decimal{184467, 14});
   CHECK(scale("18446744073709551615") == base::Decimal{184467440737095516, 2});  // 18 digits are kept
   CHECK(scale("0.333333333333333333333") == base::Decimal{333333333333333333, -18});
+  CHECK(scale("99999999999999999999") == base::Decimal{999999999999999999, 2});
+  // So is an exponent behind too many digits.
+  CHECK(scale("0.333333333333333333333e3") == base::Decimal{333333333333333333, -15});
+  CHECK(scale("123456789012345678901E-3") == base::Decimal{123456789012345678, 0});
+  CHECK(problems(text + "1e999,0) [0|0] \"\" X\n") ==
+        std::vector<std::string>{"2: SG_: '1e999', where the scale is expected; SG_ NAME : "
+                                 "START|WIDTH@ORDER+ (SCALE,OFFSET) [MIN|MAX] \"UNIT\" RECEIVER"});
+}
+
+TEST_CASE("dbc: a signal may begin at the last bit that a message can have") {
+  const Message last = message("BO_ 1 A: 1785 X\n SG_ S : 14279|1@1+ (1,0) [0|0] \"\" X\n");
+  CHECK(signal(last, "S").position.start == 14279);
+}
+
+TEST_CASE("dbc: a list of words may end the file, behind the last of them") {
+  CHECK(message("BO_ 1 A: 8 X\nNS_ :\n\tCM_").name == "A");
+}
+
+TEST_CASE("dbc: a comment asks for another file where it is the network's, and begins with the word") {
+  CHECK(message("BO_ 1 A: 8 X\nCM_ BO_ 1 \"IMPORT of goods\";\n").comment == "IMPORT of goods");
+  const auto file = read("BO_ 1 A: 8 X\nCM_ \"no IMPORT base.dbc\";\n");
+  CHECK(file.comment == "no IMPORT base.dbc");
+  CHECK(file.imports.empty());
 }
 
 TEST_CASE("dbc: a signal without bits is left out") {
@@ -340,6 +377,9 @@ TEST_CASE("dbc: one selector: pages, ranges, both") {
   CHECK(selector(plain, "Other").empty());
   const Message ranges = message(text + "SG_MUL_VAL_ 1 P1 Page 1-1, 4-6, 9-9;\n");
   CHECK(signal(ranges, "P1").selected == std::vector<dbc::SelectorRange>{{1, 1}, {4, 6}, {9, 9}});
+  // The page of the signal itself is one of them, where they leave it out.
+  CHECK(signal(message(text + "SG_MUL_VAL_ 1 P1 Page 4-6;\n"), "P1").selected ==
+        std::vector<dbc::SelectorRange>{{4, 6}, {1, 1}});
   CHECK(problems(text + "SG_MUL_VAL_ 1 P1 Page 6-4;\n").size() == 1);
   CHECK(problems(text + "SG_MUL_VAL_ 1 P1 Nothing 1-1;\n") ==
         std::vector<std::string>{
@@ -353,8 +393,12 @@ TEST_CASE("dbc: as many signals in a message as there are indexes, and no more")
     return of;
   };
   CHECK(dbc::read(text(65'535)).document.has_value());
-  CHECK(problems(text(65'536)) ==
-        std::vector<std::string>{"1: A has 65536 signals; at most 65535 in a message"});
+  // In the order of the file, whatever is looked for first.
+  CHECK(
+      problems("BO_ 2 B: 8 X\n SG_ S : 0|8@1+ (1,0) [0|0] \"\" X\nSG_MUL_VAL_ 2 S Nothing 0-0;\n" +
+               text(65'536)) ==
+      std::vector<std::string>{"2: the selector Nothing of S is not in B; another signal of the same message",
+                               "4: A has 65536 signals; at most 65535 in a message"});
 }
 
 TEST_CASE("dbc: up to two thousand signals of a message are compared with each other") {
@@ -545,6 +589,44 @@ TEST_CASE("dbc: CAN FD and J1939 by VFrameFormat, whatever the file's list of fo
   CHECK(by_protocol.messages[0].format == Message::Format::j1939);
   CHECK(by_protocol.messages[1].format == Message::Format::base);
   message("BO_ 1 A: 80 X\n", {});  // who takes it for frames says that none has so many
+  for (const char* format : {"", "FD", "_FD"}) {
+    CAPTURE(format);
+    CHECK_FALSE(message("BO_ 1 A: 8 X\nBA_ \"VFrameFormat\" BO_ 1 \"" + std::string{format} + "\";\n").fd);
+  }
+}
+
+TEST_CASE("dbc: J1939 by the protocol of the network, given or by default") {
+  const auto format = [](const std::string& attributes) {
+    return message("BO_ 2364540158 EEC1: 8 X\n" + attributes).format;
+  };
+  const std::string bus_type = "BA_DEF_ \"BusType\" STRING ;\nBA_DEF_DEF_ \"BusType\" ";
+  const std::string protocol = "BA_DEF_ \"ProtocolType\" STRING ;\nBA_DEF_DEF_ \"ProtocolType\" \"J1939\";\n";
+  CHECK(format("") == Message::Format::extended);
+  CHECK(format(protocol) == Message::Format::j1939);
+  CHECK(format(bus_type + "\"CAN\";\n" + protocol) == Message::Format::j1939);
+  CHECK(format(protocol + "BA_ \"ProtocolType\" \"CAN\";\n") == Message::Format::extended);
+  CHECK(format(bus_type + "\"J1939\";\n") == Message::Format::extended);
+  CHECK(format("BA_DEF_ BO_ \"ProtocolType\" STRING ;\nBA_DEF_DEF_ \"ProtocolType\" \"J1939\";\n") ==
+        Message::Format::extended);
+}
+
+TEST_CASE("dbc: signals that are sent when something happens, by default, have that of each") {
+  const auto attributes = [](const std::string& usual) {
+    return message(
+               "BO_ 1 A: 8 X\n SG_ S : 0|8@1+ (1,0) [0|0] \"\" X\nBA_DEF_ SG_ \"GenSigSendType\" ENUM "
+               "\"other\",\"" +
+               usual + "\";\nBA_DEF_DEF_ \"GenSigSendType\" \"" + usual + "\";\n")
+        .signals.at(0)
+        .attributes;
+  };
+  for (const char* usual : {"OnChange", "OnWriteWithRepetition", "IfActive", "IfActiveWithRepetition"}) {
+    CAPTURE(usual);
+    CHECK(attributes(usual) == std::vector<dbc::Attribute>{{"GenSigSendType", usual}});
+  }
+  for (const char* usual : {"Cyclic", "NoSigSendType"}) {
+    CAPTURE(usual);
+    CHECK(attributes(usual).empty());
+  }
 }
 
 TEST_CASE("dbc: long names replace the short ones wherever they are named") {

@@ -112,6 +112,24 @@ TEST_CASE("merge: the bit rates of interfaces, each by itself") {
   CHECK(told(into, parse("BO_ 3 B: 8 X\n")).size() == 1);
 }
 
+TEST_CASE("merge: an identifier and a name are given once on an interface, and again on another one") {
+  const auto on = [](const std::string& bus, const std::string& text) {
+    Model model = parse(text);
+    model.robot = bus;
+    model.put_on(bus);
+    return model;
+  };
+  Model into = on("can0", "BO_ 1 A: 8 X\n");
+  CHECK(told(into, on("can1", "BO_ 1 B: 8 X\n")).empty());
+  CHECK(told(into, on("can0", "BO_ 1 C: 8 X\n")) ==
+        Lines{"C has the identifier 001 of A in can0" + leave_out});
+  CHECK(told(into, on("can1", "BO_ 1 D: 8 X\n")) ==
+        Lines{"D has the identifier 001 of B in can0" + leave_out});
+  CHECK(told(into, on("can1", "BO_ 2 B: 8 X\n")) ==
+        Lines{"a second B: can0 has a message of that name" + rename});
+  CHECK(told(into, on("can1", "BO_ 3 A: 8 X\n")).empty());
+}
+
 TEST_CASE("merge: identifiers of 11 and of 29 bits, and groups, are distinguished") {
   Model into = parse(
       "BO_ 100 A: 8 X\nBO_ 2566844926 G: 8 X\nBA_DEF_ BO_ \"VFrameFormat\" ENUM "

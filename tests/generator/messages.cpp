@@ -16,6 +16,8 @@
 
 #include <catch2/catch.hpp>
 
+#include "generator/spec/json.hpp"
+#include "generator/spec/reader.hpp"
 #include "generator/spec/spec.hpp"
 #include "generator/targets/target.hpp"
 #include "unit/base/explore.hpp"
@@ -246,6 +248,109 @@ TEST_CASE("messages: what hundreds of pages have in common is found") {
         {R"(f.json:1: /messages/0/fields/302: "a" and "b" have bits in common; each is read by itself)"});
 }
 
+TEST_CASE("messages: a range of a selector may be a single number") {
+  const Model model = parse(of_fields(R"({"name": "mode", "type": "u8", "byte": 0},
+    {"name": "a", "type": "u8", "byte": 1, "selector": "mode", "selected": [[4, 4]]})"));
+  CHECK(model.messages.at(0).fields.at(1).selected == std::vector<protocol::SelectorRange>{{4, 4}});
+}
+
+TEST_CASE("messages: up to two thousand fields of a message are compared with each other") {
+  const auto doubts = [](int count) {
+    std::string fields;
+    for (int i = 0; i + 1 < count; ++i) {
+      const std::string number = std::to_string(i);
+      fields += R"({"name": "f)" + number + R"(", "type": "u1", "bit": )" + number + "}, ";
+    }
+    fields += R"({"name": "last", "type": "u1", "bit": 0})";
+    // By the reader alone: the schema takes longer for so many.
+    std::vector<spec::Problem> problems;
+    std::vector<spec::Problem> told;
+    const auto root =
+        spec::parse_json(of_fields(fields, R"(, "format": "j1939", "length": 250)"), "f.json", problems);
+    REQUIRE(problems.empty());
+    static_cast<void>(spec::read_model(root, "f.json", problems, told));
+    CHECK(printed(problems).empty());
+    return printed(told);
+  };
+  CHECK(
+      doubts(2000) ==
+      std::vector<std::string>{
+          R"(f.json:1: /messages/0/fields/1999: "f0" and "last" have bits in common; each is read by itself)"});
+  CHECK(doubts(2001).empty());
+}
+
+TEST_CASE("messages: twenty million comparisons of selected numbers are made, and no more") {
+  const auto numbers = [](int first, int count) {
+    std::string list;
+    for (int i = 0; i < count; ++i) list.append(i == 0 ? "" : ", ").append(std::to_string(first + i));
+    return "[" + list + "]";
+  };
+  const auto selected = [](const std::string& name, const std::string& where, const std::string& by,
+                           const std::string& with) {
+    return R"(, {"name": ")" + name + "\", " + where + R"(, "selector": ")" + by + R"(", "selected": )" +
+           with + "}";
+  };
+  const auto doubts = [&](int others) {
+    const std::string fields =
+        R"({"name": "mode", "type": "u8", "byte": 0})" +
+        selected("left", R"("type": "u16", "byte": 1)", "mode", "[0]") +
+        selected("right", R"("type": "u16", "byte": 3)", "mode", "[1]") +
+        // Never there together: as many comparisons as there are others, and one.
+        selected("x", R"("type": "u8", "byte": 5)", "mode", "[0]") +
+        selected("y", R"("type": "u8", "byte": 5)", "mode", numbers(1, others)) +
+        // Neither are these, as the last of 4472 * 4472 + 4 comparisons shows.
+        selected("a", R"("type": "u8", "byte": 6)", "left", numbers(0, 4471)) +
+        selected("b", R"("type": "u8", "byte": 6)", "right", numbers(0, 4471)) +
+        R"(, {"name": "c", "type": "u8", "byte": 7}, {"name": "d", "type": "u8", "byte": 7})";
+    std::vector<spec::Problem> problems;
+    std::vector<spec::Problem> told;
+    const auto root = spec::parse_json(of_fields(fields), "f.json", problems);
+    REQUIRE(problems.empty());
+    static_cast<void>(spec::read_model(root, "f.json", problems, told));
+    CHECK(printed(problems).empty());
+    return printed(told);
+  };
+  CHECK(doubts(1211) ==
+        std::vector<std::string>{
+            R"(f.json:1: /messages/0/fields/8: "c" and "d" have bits in common; each is read by itself)"});
+  CHECK(doubts(1212).empty());
+}
+
+TEST_CASE("messages: the least and the greatest number that the bits hold may have names") {
+  parse(of_fields(R"({"name": "a", "type": "u4", "byte": 0, "values": {"least": 0, "most": 15}},
+    {"name": "b", "type": "i4", "byte": 1, "values": {"least": -8, "most": 7}})"));
+  parse(of_fields(R"({"name": "b", "type": "i4", "byte": 1, "values": {"below": -9, "beyond": 8}})"),
+        {"f.json:1: /messages/0/fields/0/values/below: -9 is no value of 4 bits; it is kept, and never comes",
+         "f.json:1: /messages/0/fields/0/values/beyond: 8 is no value of 4 bits; it is kept, and never "
+         "comes"});
+}
+
+TEST_CASE("messages: a field may lie in the last byte of the longest parameter group") {
+  const auto problems = [](const std::string& place) {
+    return printed(
+        spec::parse(
+            R"({"robot": "r", "messages": [{"name": "M", "pgn": "0xFEF1", "length": 1785, "fields": [)"
+            R"({"name": "a", )" +
+                place + "}]}]}",
+            "f.json")
+            .problems);
+  };
+  for (const char* good :
+       {R"("byte": 1784, "type": "u8")", R"("byte": 1784, "type": "u8", "byte_order": "big")",
+        R"("bit": 14279, "type": "u1")", R"("bit": 14272, "type": "u8")", R"("byte": 1777, "type": "u64")"}) {
+    CAPTURE(good);
+    CHECK(problems(good).empty());
+  }
+  const auto beyond = [](const std::string& member, const std::string& width) {
+    return std::vector<std::string>{"f.json:1: /messages/0/fields/0/" + member + ": a field of " + width +
+                                    " bits that begins here does not end within 1785 bytes; an earlier "
+                                    "beginning"};
+  };
+  CHECK(problems(R"("byte": 1784, "type": "u9")") == beyond("byte", "9"));
+  CHECK(problems(R"("byte": 1784, "type": "u9", "byte_order": "big")") == beyond("byte", "9"));
+  CHECK(problems(R"("bit": 14279, "type": "u2")") == beyond("bit", "2"));
+}
+
 TEST_CASE("messages: doubts are in the order of the file") {
   parse(
       of_fields("\n"
@@ -268,6 +373,74 @@ TEST_CASE("messages: an identifier has sixteen digits at most") {
   CHECK(printed(with("0x00000000000000123").problems) ==
         std::vector<std::string>{
             R"(f.json:1: /messages/0/id: "0x00000000000000123" is not an id; "0x0" to "0x1FFFFFFF")"});
+}
+
+TEST_CASE("messages: identifiers to the last of 11 and of 29 bits") {
+  const auto number = [](const std::string& members) {
+    const Model model =
+        parse(R"({"robot": "r", "messages": [{"name": "M", )" + members + R"(, "fields": []}]})");
+    return model.messages.at(0).address.number;
+  };
+  CHECK(number(R"("id": "0x7FF")") == 0x7FF);
+  CHECK(number(R"("id": 2047)") == 0x7FF);
+  CHECK(number(R"("id": "0x1FFFFFFF", "format": "extended")") == 0x1FFF'FFFF);
+  CHECK(number(R"("id": 536870911, "format": "extended")") == 0x1FFF'FFFF);
+}
+
+TEST_CASE("messages: the number of a parameter group that has a destination ends with a zero for it") {
+  const auto with = [](const std::string& pgn) {
+    return spec::parse(
+        R"({"robot": "r", "messages": [{"name": "M", "pgn": ")" + pgn + R"(", "fields": []}]})", "f.json");
+  };
+  // Priority 6, to all, from the null address.
+  const std::pair<const char*, std::uint32_t> good[] = {{"0xEA00", 0x18EA'FFFE},  {"0xEF00", 0x18EF'FFFE},
+                                                        {"0x1EA00", 0x19EA'FFFE}, {"0x0", 0x1800'FFFE},
+                                                        {"0xF001", 0x18F0'01FE},  {"0x3FFFF", 0x1BFF'FFFE}};
+  for (const auto& [pgn, number] : good) {
+    CAPTURE(pgn);
+    const auto loaded = with(pgn);
+    CHECK(printed(loaded.problems).empty());
+    REQUIRE(loaded.spec);
+    CHECK(loaded.spec->model().messages.at(0).address.number == number);
+  }
+  const std::pair<std::string, std::string> bad[] = {{"0xEA01", "0xEA00"},
+                                                     {"0xEA80", "0xEA00"},
+                                                     {"0xEFFF", "0xEF00"},
+                                                     {"0x1EA21", "0x1EA00"},
+                                                     {"0x3EA21", "0x3EA00"}};
+  for (const auto& [pgn, group] : bad)
+    CHECK(printed(with(pgn).problems) ==
+          std::vector<std::string>{"f.json:1: /messages/0/pgn: \"" + pgn +
+                                   "\" ends with a destination, which is no part of the group; \"" + group +
+                                   "\""});
+}
+
+TEST_CASE("messages: a time of a DBC file is a whole number of nanoseconds, or there is none") {
+  const auto times = [](const std::string& milliseconds) {
+    const Model model = parse("BO_ 1 A: 8 X\nBA_ \"GenMsgCycleTime\" BO_ 1 " + milliseconds +
+                                  ";\nBA_ \"GenMsgDelayTime\" BO_ 1 " + milliseconds + ";\n",
+                              {}, "f.dbc");
+    CHECK(model.messages.at(0).period == model.messages.at(0).shortest_period);
+    return model.messages.at(0).period;
+  };
+  CHECK(times("12.5") == 12'500us);
+  CHECK(times("0.000001") == 1ns);
+  CHECK(times("0.0000006") == 1ns);
+  CHECK(times("0.0000004") == 0ns);
+  CHECK(times("1e30") == 0ns);  // longer than can be counted
+}
+
+TEST_CASE("messages: of a start value that cannot be forty characters are shown") {
+  const std::string value = "256." + std::string(60, '0');
+  const std::string shown = "256." + std::string(36, '0');
+  CHECK(printed(spec::parse(of_fields(R"({"name": "a", "type": "u8", "byte": 0, "start": )" + value + "}"),
+                            "f.json")
+                    .problems) == std::vector<std::string>{"f.json:1: /messages/0/fields/0/start: " + shown +
+                                                           " is out of range; a raw number of 8 bits"});
+  parse("BO_ 1 A: 8 X\n SG_ a : 0|8@1+ (1,0) [0|0] \"\" X\nBA_ \"GenSigStartValue\" SG_ 1 a " + value + ";\n",
+        {"f.dbc:2: the start value " + shown +
+         " of a is no raw number of 8 bits; left out; the signal starts at 0"},
+        "f.dbc");
 }
 
 TEST_CASE("messages: a frame of CAN FD has 64 bytes at most, a parameter group 1785 in several frames") {
@@ -556,16 +729,27 @@ TEST_CASE("messages: a file of two or four bytes a character is named as that") 
     std::string text;
     std::string encoding;
   };
-  const Row rows[] = {{"\xFF\xFE"s + "V\0E\0"s, "UTF-16LE"}, {"V\0E\0"s, "UTF-16LE"},
-                      {"\xFE\xFF"s + "\0V\0E"s, "UTF-16BE"}, {"\0{\0}"s, "UTF-16BE"},
-                      {"\xFF\xFE\0\0"s, "UTF-32LE"},         {"{\0\0\0"s, "UTF-32LE"},
-                      {"\0\0\xFE\xFF"s, "UTF-32BE"},         {"\0\0\0{"s, "UTF-32BE"}};
+  const Row rows[] = {{"\xFF\xFE"s + "V\0E\0"s, "UTF-16LE"},
+                      {"V\0E\0"s, "UTF-16LE"},
+                      {"\xFE\xFF"s + "\0V\0E"s, "UTF-16BE"},
+                      {"\0{\0}"s, "UTF-16BE"},
+                      {"\xFF\xFE\0\0"s, "UTF-32LE"},
+                      {"{\0\0\0"s, "UTF-32LE"},
+                      {"\0\0\xFE\xFF"s, "UTF-32BE"},
+                      {"\0\0\0{"s, "UTF-32BE"},
+                      {"{\0"s, "UTF-16LE"},
+                      {"\0{"s, "UTF-16BE"}};
   for (const auto& [text, encoding] : rows) {
     const spec::Loaded loaded = spec::parse(text, "car.dbc");
     CHECK(!loaded.spec);
     REQUIRE(loaded.problems.size() == 1);
     CHECK(loaded.problems[0].place == "car.dbc");
     CHECK(loaded.problems[0].what == "the file is " + encoding);
+  }
+  // Too short to tell, or as it should be.
+  for (const std::string& text : {""s, "\0"s, "{"s, "\0\0"s, "\0\0{"s, "{}"s, "\xFF"s, "\xFE"s}) {
+    CAPTURE(text.size());
+    CHECK(spec::wide_encoding(text).empty());
   }
 }
 
