@@ -2,7 +2,10 @@
 /// translation of a DBC file it delivers whole samples: from a frame to a struct and back in one call, with
 /// scaled accessors, identifiers with priority, and the requests that no DBC can describe.
 #include <algorithm>
+#include <initializer_list>
+#include <map>
 #include <set>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -49,6 +52,7 @@ class Header {
         taken_(names_of_helpers(robot_)) {
     if (!model_.topics.empty()) taken_.merge(names_in(c_request_part, robot_));
     if (model_.bit_rate != 0) taken_.insert(macro_ + "_BIT_RATE");
+    claim_names();
   }
 
   std::string make() {
@@ -77,8 +81,29 @@ class Header {
     while (!taken_.insert(name).second) name += '_';
     return name;
   }
-  std::string stem(const TopicModel& topic, const FrameModel& frame) const {
-    return robot_ + "_" + topic.name + (is_aggregate(topic) ? "_" + frame.name : "");
+  /// Names of types and of what is made with them, before any other: those that a type begins must be its
+  /// own.
+  void claim_names() {
+    const auto claim = [this](std::string stem, std::initializer_list<const char*> ends) {
+      const auto is_free = [&] {
+        return std::none_of(ends.begin(), ends.end(),
+                            [&](const char* end) { return taken_.count(stem + end) != 0; });
+      };
+      while (!is_free()) stem += '_';
+      for (const char* const end : ends) taken_.insert(stem + end);
+      return stem;
+    };
+    for (const TopicModel& topic : model_.topics) {
+      const std::string name = robot_ + "_" + topic.name;
+      if (!is_aggregate(topic)) {
+        stems_[&topic] = stems_[&topic.frames.front()] =
+            claim(name, {"_t", "_encode", "_decode", "_frame", "_take"});
+        continue;
+      }
+      stems_[&topic] = claim(name, {"_t", "_frame", "_take"});
+      for (const FrameModel& frame : topic.frames)
+        stems_[&frame] = claim(name + "_" + frame.name, {"_t", "_encode", "_decode"});
+    }
   }
 
   // --- the robot -------------------------------------------------------------------------------------------
@@ -135,7 +160,7 @@ class Header {
 
   void write_struct(const std::string& name, const FrameModel& frame) {
     std::vector<std::pair<std::string, std::string>> lines;
-    out_.open("typedef struct " + unique(name + "_t") + " {");
+    out_.open("typedef struct " + name + "_t {");
     for (const FieldModel& field : frame.fields) {
       std::string text = remark(field);
       if (field.flags || !field.values.empty()) text = text.empty() ? "see below" : text + "; see below";
@@ -157,8 +182,7 @@ class Header {
   }
 
   void write_encode(const std::string& name, const FrameModel& frame) {
-    out_.open("static inline void " + unique(name + "_encode") + "(const " + name +
-              "_t* value, uint8_t data[8]) {");
+    out_.open("static inline void " + name + "_encode(const " + name + "_t* value, uint8_t data[8]) {");
     std::vector<std::string> bytes[8];
     for (const FieldModel& field : frame.fields) {
       const std::string bits = field.name + "_bits";
@@ -185,8 +209,7 @@ class Header {
   }
 
   void write_decode(const std::string& name, const FrameModel& frame) {
-    out_.open("static inline void " + unique(name + "_decode") + "(" + name +
-              "_t* value, const uint8_t data[8]) {");
+    out_.open("static inline void " + name + "_decode(" + name + "_t* value, const uint8_t data[8]) {");
     for (const FieldModel& field : frame.fields) {
       std::vector<std::string> terms;
       for (const Piece& piece : pieces_of(field.position)) {
@@ -253,7 +276,7 @@ class Header {
   }
 
   void write_frame(const TopicModel& topic, const FrameModel& frame) {
-    const std::string name = stem(topic, frame);
+    const std::string name = stems_.at(&frame);
     comment(with_source(title(topic.name) + (is_aggregate(topic) ? ", " + frame.name : "") +
                             (frame.description.empty() ? "" : ": " + frame.description) + ".",
                         frame.source.joined()));
@@ -281,14 +304,14 @@ class Header {
         std::string place = "value";
         if (is_aggregate(topic)) place = "&value->" + member(frame.name);
         if (frame.is_array) place += "[" + std::to_string(i) + "]";
-        slots.push_back({std::move(place), stem(topic, frame), frame.id + i, frame.dlc});
+        slots.push_back({std::move(place), stems_.at(&frame), frame.id + i, frame.dlc});
       }
     return slots;
   }
 
   void write_topic(const TopicModel& topic) {
     const bool sensor = topic.kind == protocol::Kind::sensor;
-    const std::string name = robot_ + "_" + topic.name;
+    const std::string name = stems_.at(&topic);
     const std::string name_macro = upper(topic.name);
     out_.line("// --- " + topic.name);
     out_.line();
@@ -301,9 +324,9 @@ class Header {
     if (topic.is_group) define(name_macro + "_COUNT", std::to_string(topic.count) + "u");
     if (sensor) define(name_macro + "_FRAMES", std::to_string(frame_count(topic)) + "u");
     if (is_aggregate(topic)) {
-      out_.open("typedef struct " + unique(name + "_t") + " {");
+      out_.open("typedef struct " + name + "_t {");
       for (const FrameModel& frame : topic.frames)
-        out_.line(stem(topic, frame) + "_t " + member(frame.name) +
+        out_.line(stems_.at(&frame) + "_t " + member(frame.name) +
                   (frame.is_array ? "[" + std::to_string(frame.count) + "]" : "") + ";");
       out_.close("} " + name + "_t;");
     }
@@ -313,7 +336,7 @@ class Header {
   }
 
   void write_make_frame(const TopicModel& topic, const std::vector<Slot>& slots) {
-    const std::string name = robot_ + "_" + topic.name;
+    const std::string name = stems_.at(&topic);
     const bool several = slots.size() > 1;
     const std::string index = several ? ", uint8_t index" : topic.is_group ? ", uint8_t number" : "";
     const std::string identifier =
@@ -323,7 +346,7 @@ class Header {
     if (several)
       comment("Frame `index`, from 0 to " + std::to_string(slots.size() - 1) +
               ", in the order in which they are sent; any other is the last.");
-    const std::string head = "static inline " + robot_ + "_frame " + unique(name + "_frame") + "(";
+    const std::string head = "static inline " + robot_ + "_frame " + name + "_frame(";
     out_.line(head + "const " + name + "_t* value" + index + ",");
     out_.open(std::string(head.size(), ' ') + robot_ + "_priority priority) {");
     out_.line(robot_ + "_frame frame = {0, " + std::to_string(slots.front().dlc) +
@@ -354,7 +377,7 @@ class Header {
   }
 
   void write_take(const TopicModel& topic, const std::vector<Slot>& slots) {
-    const std::string name = robot_ + "_" + topic.name;
+    const std::string name = stems_.at(&topic);
     const bool sensor = topic.kind == protocol::Kind::sensor;
     std::string says = "Whatever the priority. ";
     says += topic.is_group ? "The number of the one it was for, from 1; "
@@ -363,7 +386,7 @@ class Header {
                   "all others; "
                 : "0; ";
     comment(says + "or " + macro_ + "_FOREIGN, or " + macro_ + "_WRONG_LENGTH, and the struct is as it was.");
-    const std::string head = "static inline int " + unique(name + "_take") + "(";
+    const std::string head = "static inline int " + name + "_take(";
     out_.line(head + name + "_t* value,");
     out_.open(std::string(head.size(), ' ') + "const " + robot_ + "_frame* frame) {");
     if (topic.is_group)
@@ -402,6 +425,7 @@ class Header {
   std::string macro_;
   Writer out_;
   std::set<std::string> taken_;
+  std::map<const void*, std::string> stems_;  ///< of topics and of frames
 };
 
 }  // namespace

@@ -136,6 +136,29 @@ class C(Case):
         for compiler in COMPILERS.values():
             self.compile(compiler, source, "-c", "-o", self.folder / "both.o")
 
+    def test_names_that_meet_are_told_apart(self):
+        """load's field mass in tonnes is read by r_load_mass_t, which is the type of load_mass, too; and so on."""
+        def topic(number, name, frames):
+            return {"name": name, "id": number, "board": "b", "deadline": "50ms", "source": "s", "frames": frames}
+        field = {"name": "mass", "byte": 0, "type": "u8", "unit": "t", "scale": 0.5}
+        topics = [topic(1, "load", [{"fields": [field]}]), topic(2, "load_mass", [{"fields": [field]}]),
+                  topic(3, "crane", [{"name": "hook", "id": 3, "fields": [field]}, {"name": "arm", "id": 4, "fields": [field]}]),
+                  topic(5, "crane_hook_mass", [{"fields": [field]}]),
+                  topic(6, "a", [{"fields": [{"name": "b", "byte": 0, "type": "u8", "unit": "x", "unit_name": "encode", "scale": 0.5}]}]),
+                  topic(7, "a_b", [{"fields": [field]}])]
+        source = self.folder / "met.c"
+        source.write_text('#include "met.h"\nint main(void) { return 0; }\n')
+        for order in (topics, topics[::-1]):
+            spec = {"robot": "r", "namespace": "r", "bus": {"bit_rate": 500000, "source": "s"},
+                    "boards": [{"name": "b", "mcu": "m", "source": "s"}], "topics": order}
+            (self.folder / "met.json").write_text(json.dumps(spec))
+            generate(self.folder / "met.json", "--to", "c", "-o", self.folder / "met.h")
+            text = (self.folder / "met.h").read_text()
+            self.assertIn("} r_load_mass_t;", text)
+            self.assertIn("double r_load_mass_t_(const r_load_t* value)", text)
+            for compiler in (COMPILERS["gcc"], COMPILERS["C++"]):
+                self.compile(compiler, source, "-c", "-o", self.folder / "met.o")
+
     def test_the_frames_of_the_thesis(self):
         self.header("amiro")
         for name in ("gcc", "clang", "C++"):
