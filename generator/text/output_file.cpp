@@ -67,9 +67,11 @@ std::optional<Problem> write_file(const std::string& path, std::string_view text
     if (file >= 0) ::close(file);
     return problem;
   }
+  // As far as the links lead, to what may not be there yet; the file system refuses more than 40.
   std::error_code error;
   std::filesystem::path target = path;
-  if (std::filesystem::is_symlink(target, error)) target = std::filesystem::weakly_canonical(target, error);
+  for (int links = 0; links < 40 && std::filesystem::is_symlink(target, error); ++links)
+    target = target.parent_path() / std::filesystem::read_symlink(target, error);
   return replace(path, target, text, exists ? std::optional<::mode_t>{old.st_mode & 07777U} : std::nullopt);
 }
 

@@ -121,6 +121,15 @@ class Program(unittest.TestCase):
         self.assertTrue(self.header.is_symlink())
         self.assertIn("namespace pair", real.read_text())
         self.assertEqual(stat.S_IMODE(real.stat().st_mode), 0o640)
+        # Also to one that is not there yet, through another link.
+        real.unlink()
+        (self.folder / "deep").mkdir()
+        (self.folder / "deep" / "link.hpp").symlink_to(os.path.join("..", "real.hpp"))
+        self.header.unlink()
+        self.header.symlink_to(os.path.join("deep", "link.hpp"))
+        self.assertEqual(run(self.spec, "-o", self.header).returncode, 0)
+        self.assertTrue(self.header.is_symlink() and (self.folder / "deep" / "link.hpp").is_symlink())
+        self.assertIn("namespace pair", real.read_text())
 
     def test_a_new_header_has_the_mode_of_any_new_file(self):
         subprocess.run(["sh", "-c", f'umask 027; exec "$0" "$1" -o "$2"', TOOL, self.spec, self.header], check=True)
