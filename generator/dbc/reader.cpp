@@ -80,7 +80,8 @@ class Resolver {
     for (auto& statement : statements_.selectors) selector(statement);
     for (auto& statement : statements_.attributes) attribute(statement);
     for (const auto& statement : statements_.messages) expect_countable(statement);
-    for (auto& statement : statements_.messages) multiplexing(statement);
+    for (std::size_t i = 0; i < statements_.messages.size(); ++i)
+      if (!replaced_[i]) multiplexing(statements_.messages[i]);
     for (auto& statement : statements_.messages) meaning(statement.message);
     send_types_of_signals();
     long_names();

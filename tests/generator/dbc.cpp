@@ -162,7 +162,7 @@ TEST_CASE("dbc: identifiers of 11 and 29 bits") {
                   {"1: the identifier " + std::string{id} + " of A has more than 29 bits; read as 1"})
               .id == 1);
   }
-  // Both of one message are told in the order in which they are found.
+  // Both of one message are said in the order in which they are found.
   CHECK(message(
             "BO_ 1610614784 A: 8 X\n",
             {"1: the identifier 1610614784 of A has more than 29 bits; read as 2048",
@@ -330,6 +330,13 @@ TEST_CASE("dbc: the same identifier, and the same name, twice") {
   CHECK(file.messages[0].signals.empty());
   read("BO_ 1 B: 8 X\nBO_ 2 B: 4 X\n",
        {"2: the name B is that of the message in line 1; both are kept; give one another name"});
+  // A selector that only the replaced one has makes no problem.
+  const auto replaced = read(
+      "BO_ 1 A: 8 X\n SG_ Page M : 0|8@1+ (1,0) [0|0] \"\" X\n SG_ P m1 : 8|8@1+ (1,0) [0|0] \"\" X\n"
+      "BO_ 1 B: 8 X\n SG_ Page M : 0|8@1+ (1,0) [0|0] \"\" X\nSG_MUL_VAL_ 1 P Page 1-1;\n",
+      {"4: the identifier 1 of B is that of A in line 1; this one counts"});
+  REQUIRE(replaced.messages.size() == 1);
+  CHECK(replaced.messages[0].signals.size() == 1);
 }
 
 TEST_CASE("dbc: floating-point signals") {
