@@ -79,8 +79,9 @@ class Probe {
     ask("AT?.", 600ms,
         [before](std::string_view text) { return says_found(text) || says_ok(text.substr(before)); });
     if (const auto known = from_an_answer()) return known;
-    // It may have heard a beginning of a command: a line end, and its list.
-    ask("\nlist\n", 600ms, is_readable);
+    // It may have heard a beginning of a command: a line end, and its list, whatever it has answered before.
+    const std::size_t asked = heard_.size();
+    ask("\nlist\n", 600ms, [asked](std::string_view text) { return is_readable(text.substr(asked)); });
     if (const auto late = from_an_answer()) return late;
     if (is_readable(heard_)) return Dialect::thesis;
     return std::nullopt;

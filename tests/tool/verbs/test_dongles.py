@@ -105,6 +105,7 @@ class Dongles(Case):
         self.play(Thesis)
         self.check_verbs()
         self.assertNotIn("HANGS", self.dongle.commands)
+        self.assertNotIn(".AT?.list", self.dongle.commands)  # a line end has gone before
         self.check_verbs("--dongle", "thesis")
         self.assertNotIn("HANGS", self.dongle.commands)
 
