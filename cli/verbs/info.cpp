@@ -180,16 +180,14 @@ void print_frames(const protocol::Topic& topic, const spec::TopicModel& of) {
                layout.name.empty() ? "" : ": ", layout.id.value,
                protocol::identifier_of(frame, topic.priority), name(topic.priority), layout.length);
     if (is_first && !model.description.empty()) print_line("             {}\n", prose(model.description, 13));
-    const auto values = layout.values();
-    for (std::size_t k = 0; k < values.size(); ++k) {
-      print_field(layout, values[k]);
+    std::size_t fields = 0, derived = 0;
+    for (const protocol::Field& value : layout.values()) {
+      print_field(layout, value);
       if (!is_first) continue;
-      // Behind each derived field its uncertainty comes, of which there is nothing to say.
-      const std::size_t derived = k - model.fields.size();
-      if (k < model.fields.size())
-        print_comment(model.fields[k].description);
-      else if (derived % 2 == 0)
-        print_comment(model.derived[derived / 2].description);
+      if (!value.is_derived())
+        print_comment(model.fields[fields++].description);
+      else if (!value.uncertainty)
+        print_comment(model.derived[derived++].description);
     }
   }
 }

@@ -89,6 +89,19 @@ class Info(Case):
             first = next(i for i, line in enumerate(lines) if line.startswith(f"    {name} "))
             self.assertEqual(lines[first + 1], f"      comment   {comment}", out)
         self.assertEqual(out.count("\n      comment "), 2, out)
+        # Without noise there is no uncertainty behind it.
+        with open(os.path.join(os.environ["OCM_SOURCE_DIR"], "tests", "generator", "golden", "whole.json"), encoding="utf-8") as file:
+            spec = json.load(file)
+        for topic in spec["topics"]:
+            for frame in topic.get("frames", []):
+                for derived in frame.get("derived", []):
+                    if derived["name"] == "distance":
+                        derived["noise"] = 0
+        out, _ = self.run_tool(*self.spec("exact.json", json.dumps(spec)), "info", "ring")
+        lines = out.splitlines()
+        for name, comment in (("distance", "dark things seem far away"), ("glow", "rough. Very.")):
+            first = next(i for i, line in enumerate(lines) if line.startswith(f"    {name} "))
+            self.assertEqual(lines[first + 1], f"      comment   {comment}", out)
 
     def test_a_message_by_its_number_and_a_field_by_its_name(self):
         car = ("--spec", os.path.join(os.environ["OCM_SOURCE_DIR"], "examples", "small_car.dbc"))
