@@ -202,11 +202,12 @@ std::uint64_t summarise(const record::Recorder& recorder, const record::Files& f
   if (files.keeps_none()) text += ", not kept: a ring keeps no file without a frame";
   std::uint64_t lost = 0;
   for (const auto& port : recorder.ports()) {
-    const std::string where = recorder.ports().size() > 1 ? " on " + port.name : "";
-    add_count(text, port.errors, "error frames" + where);
+    const std::string on = recorder.ports().size() > 1 ? "on " + port.name : "";
+    const std::string where = on.empty() ? "" : " " + on;
+    add_count(text, port.errors, "error frame", on);
     add_count(text, port.lost() - port.lost_here, "lost in the receive queue" + where);
     add_count(text, port.lost_here, "lost because the disk was too slow" + where);
-    add_count(text, port.overflows, "times frames lost in the controller" + where);
+    add_count(text, port.overflows, "time", "frames lost in the controller" + where);
     lost += port.lost() + port.overflows;
   }
   remark(text);
