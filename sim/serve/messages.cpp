@@ -93,6 +93,9 @@ Ending nothing_to_play(const MessagePlayer& player, const protocol::Catalogue& c
   if (!left.no_fd.empty())
     return Ending{{fmt::format("sim: no message of '{}' can be sent: {}", name_of(catalogue), no_fd.what),
                    no_fd.remedy}};
+  if (catalogue.topics.empty())
+    return Ending{{fmt::format("sim: '{}' has no message", name_of(catalogue)), "give a spec with messages"},
+                  true};
   if (left.without_period.empty() && !left.switched_off.empty())
     return Ending{{fmt::format("sim: no message of '{}' is left to send", name_of(catalogue)),
                    "switch fewer nodes off"},

@@ -120,7 +120,8 @@ TEST_CASE("Where nothing can be played, the reason that helps most is said") {
     bool misuse;
   };
   for (const Row& row :
-       {Row{{wide, off, rare},
+       {Row{{}, "sim: 'car' has no message", "give a spec with messages", true},
+        Row{{wide, off, rare},
             "sim: no message of 'car' can be sent: can9 carries no CAN FD frames",
             "use the simulated bus",
             false},
