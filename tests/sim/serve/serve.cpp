@@ -539,7 +539,7 @@ TEST_CASE(
     "A round on a virtual bus has all messages that are due in it, also beside the boards of an AMiRo") {
   const Folder folder;
   const OneMessage often{std::chrono::milliseconds{1}};
-  const std::string sent = "unknown sender    sent ";
+  const std::string sent = "unknown sender    sent 0, ";  // no program acknowledges them: the bus is full
   const auto alone = reports_of([&](const sim::Shell& shell) {
     return sim::serve_messages(folder / "bus", often.catalogue, {}, shell);
   });

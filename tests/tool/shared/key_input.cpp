@@ -59,8 +59,8 @@ TEST_CASE("key input: keys come one by one, and the terminal is set back") {
     KeyInput keys;
     CHECK(keys.is_terminal());
     CHECK(modes() == tcflag_t{ISIG});
-    CHECK(settings().c_cc[VMIN] == 0);  // a read waits for no key, and no time
-    CHECK(settings().c_cc[VTIME] == 0);
+    CHECK(settings_of(terminal).c_cc[VMIN] == 0);  // a read waits for no key, and no time
+    CHECK(settings_of(terminal).c_cc[VTIME] == 0);
     CHECK(pressed(keys).empty());
     terminal.press("q+");
     CHECK(pressed(keys) == "q+");
@@ -73,8 +73,8 @@ TEST_CASE("key input: keys come one by one, and the terminal is set back") {
     CHECK(pressed(keys) == "x");
   }
   CHECK(modes() == tcflag_t{ICANON | ECHO | ISIG});
-  CHECK(settings().c_cc[VMIN] == before.c_cc[VMIN]);
-  CHECK(settings().c_cc[VTIME] == before.c_cc[VTIME]);
+  CHECK(settings_of(terminal).c_cc[VMIN] == before.c_cc[VMIN]);
+  CHECK(settings_of(terminal).c_cc[VTIME] == before.c_cc[VTIME]);
 }
 
 TEST_CASE("key input: the terminal waits for no key and for no time, whatever it did before") {
