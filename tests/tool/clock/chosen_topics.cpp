@@ -37,7 +37,8 @@ std::string ask(const std::string& name) {
   return "a sensor is silent until it is asked, as by `amiroctl publish " + name + " 500ms`\n";
 }
 
-TEST_CASE("chosen topics: of sensors that are silent until they are asked the first is named, and no other topic") {
+TEST_CASE(
+    "chosen topics: of sensors that are silent until they are asked the first is named, and no other topic") {
   CHECK(told({}) == ask("odometry"));  // of all
   CHECK(told({"gyroscope"}) == ask("gyroscope"));
   CHECK(told({"gyroscope", "accelerometer"}) == ask("gyroscope"));
