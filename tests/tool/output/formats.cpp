@@ -31,7 +31,7 @@ std::string shown(std::unique_ptr<cli::Output> output, const std::vector<std::st
     const log::Entry entry{time, *can::parse_frame(text)};
     const auto reception = cli::understand(receiver, entry);
     output->write(out, {"can0", entry, reception});
-    time += step;
+    if (&text != &frames.back()) time += step;
   }
   return std::string{out.view()};
 }

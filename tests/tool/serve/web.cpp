@@ -382,9 +382,6 @@ TEST_CASE("web: why it cannot serve, and what is to be done") {
   options.certificate = empty;
   options.key = none;
   CHECK(why(options) == "--key " + none + ": No such file or directory\nname a PEM file that can be read");
-  options.key = empty;
-  CHECK_THAT(why(options),
-             Catch::Matches("cannot serve: [^\n]*[^\n ]\nis the key of --key that of --certificate\\?"));
 }
 
 TEST_CASE("web: who shows the token may command, and to who shows another one it is said") {
