@@ -55,6 +55,16 @@ static_assert(respond(example, std::array{NodeQueue{Kind::mailboxes, 2}, by_prio
 static_assert(respond(example, std::array{NodeQueue{Kind::mailboxes, 2}, by_priority})[3] ==
               respond(example, std::array{by_priority, by_priority})[3]);
 
+// A later instance can be the worst, in a queue of one as by priority: Davis et al. 2007, table 3, with all
+// times doubled.
+constexpr std::array<Message, 3> later{{{.cost = 2, .period = 5, .node = 1},
+                                        {.cost = 2, .period = 7, .node = 1},
+                                        {.cost = 2, .period = 7, .node = 0}}};
+static_assert(respond(later, std::array{by_priority, by_priority})[2].response == 7);
+static_assert(respond(later, std::array{by_priority, by_priority})[2].instance == 1);
+static_assert(respond(later, std::array{fifo, by_priority})[2].response == 7);
+static_assert(respond(later, std::array{fifo, by_priority})[2].instance == 1);
+
 static_assert(pending_bound({.period = 100}, {.response = 100}) == 1);
 static_assert(pending_bound({.period = 100}, {.response = 101}) == 2);
 static_assert(queue_bound(example, respond(example, std::array{fifo, by_priority}), 0) == 2);

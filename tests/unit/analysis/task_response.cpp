@@ -30,6 +30,15 @@ using Times = std::array<std::int64_t, N>;
 constexpr auto set_a = rate_monotonic(std::array{Task{12, 50}, Task{10, 40}, Task{10, 30}});
 static_assert(responses(set_a) == Times<3>{52, 20, 10});
 static_assert(first_miss(set_a) == 0 && verdict(set_a, 0) == Reason::misses_deadline);
+// As many as both have room for.
+template <std::size_t Room>
+constexpr std::array<Explained, Room> in_room_of() {
+  std::array<Explained, Room> results{};
+  response_times(std::span<const Task>{set_a}, std::span<Explained>{results});
+  return results;
+}
+static_assert(in_room_of<1>()[0] == response_times(set_a)[0]);
+static_assert(in_room_of<set_a.size() + 1>()[set_a.size()] == Explained{});
 static_assert(response_times(set_a)[0].slack() == -2);
 constexpr auto set_b = rate_monotonic(std::array{Task{32, 80}, Task{5, 40}, Task{4, 16}});
 static_assert(responses(set_b) == Times<3>{58, 9, 4} && all_schedulable(set_b));

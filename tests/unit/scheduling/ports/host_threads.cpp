@@ -100,6 +100,7 @@ TEST_CASE("an urgent level preempts a less urgent one where priorities are real"
   HostThreads threads;
   std::atomic<bool> urgent_ran{false};
   std::atomic<bool> low_saw_it{false};
+  std::atomic<bool> on_one{false};  // on two processors it would run beside the urgent one
   const auto pend = [&](Level level) {
     const auto guard = threads.lock();
     threads.pend(level);
@@ -112,6 +113,9 @@ TEST_CASE("an urgent level preempts a less urgent one where priorities are real"
                          return;
                        }
                        pend(Level::urgent);
+                       cpu_set_t processors;
+                       on_one = sched_getaffinity(0, sizeof processors, &processors) == 0 &&
+                                CPU_COUNT(&processors) == 1;
                        for (int i = 0; i < 5000 && !urgent_ran; ++i) spend(1ms);
                        low_saw_it = urgent_ran.load();
                      })
@@ -120,6 +124,7 @@ TEST_CASE("an urgent level preempts a less urgent one where priorities are real"
   for (int i = 0; i < 5000 && !low_saw_it; ++i) std::this_thread::sleep_for(1ms);
   threads.stop();
   CHECK(low_saw_it);
+  CHECK(on_one == !threads.shortfall());
 }
 
 TEST_CASE("a whole board on threads: requests from two sides of it, a bus that is full now and then") {
