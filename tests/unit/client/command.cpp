@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <string>
+#include <vector>
 
 #include <catch2/catch.hpp>
 
@@ -41,6 +43,8 @@ TEST_CASE("a set point that is held comes in time for the board's watchdog") {
   // [spec/topics.json: watchdog of motors, 500 ms]
   CHECK(client::longest_without_set_point == std::chrono::milliseconds{500});
   CHECK(4 * client::hold_period < client::longest_without_set_point);
+  // What goes on for longer without one, such as a travel, must be ended.
+  CHECK(client::longest_watchdog == std::chrono::seconds{2});
   // Who listens hears the set point of another program that is late by half a period.
   CHECK(client::listen_before_hold == client::hold_period + client::hold_period / 2);
 }
@@ -72,6 +76,47 @@ TEST_CASE(
     CHECK(command.frames[behaviours] == set_point(topic(name), {}));
   }
   CHECK(command.frames.size() == 1 + behaviours + sensors);
+}
+
+TEST_CASE("what is repeated leaves time to others") {
+  CHECK(client::shortest_repeat == std::chrono::microseconds{100});
+}
+
+TEST_CASE("a command's frames, then those of CAN FD, then a broadcast from its announcement on") {
+  protocol::FrameLayout layout;
+  layout.length = 16;
+  layout.address = {protocol::Address::By::pgn, true, 0x0CFE'CA2A};
+  protocol::Topic message;
+  message.name = "DM1";
+  message.kind = protocol::Kind::message;
+  message.frames = {&layout, 1};
+  client::Broadcast broadcast;
+  broadcast.message = &message;
+  broadcast.data = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16};
+  CHECK(broadcast.id() == 0x0CFE'CA2A);
+  CHECK(broadcast.frames() == 4);
+
+  const can::Frame classic{0x201, 8, {}};
+  can::AnyFrame fd;
+  fd.id = 0x123;
+  fd.length = 12;
+  fd.flags = can::frame_flag::fd;
+  client::Command command;
+  command.frames.push_back(classic);
+  command.fd_frames.push_back(fd);
+  command.broadcast = broadcast;
+  std::vector<can::AnyFrame> sent;
+  command.each_frame([&sent](const can::AnyFrame& frame) { sent.push_back(frame); });
+  REQUIRE(sent.size() == 6);
+  CHECK(sent[0] == can::AnyFrame{classic});
+  CHECK(sent[1] == fd);
+  // As j1939/broadcast.hpp has them: 16 bytes in 3 packets, to all.
+  const can::Frame parts[] = {
+      {0x1CEC'FF2A, 8, {32, 16, 0, 3, 0xFF, 0xCA, 0xFE, 0x00}, can::Format::extended},
+      {0x1CEB'FF2A, 8, {1, 1, 2, 3, 4, 5, 6, 7}, can::Format::extended},
+      {0x1CEB'FF2A, 8, {2, 8, 9, 10, 11, 12, 13, 14}, can::Format::extended},
+      {0x1CEB'FF2A, 8, {3, 15, 16, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF}, can::Format::extended}};
+  for (std::size_t i = 0; i < 4; ++i) CHECK(sent[i + 2] == can::AnyFrame{parts[i]});
 }
 
 }  // namespace client_command_test

@@ -332,6 +332,54 @@ TEST_CASE("diagnosis: a topic of a board that the catalogue lacks is passed over
   diagnosis.take(receiver.take({{}, ocm::protocol::sample_frame(power, Priority::low, 0)}));
   CHECK(diagnosis.boards().size() == 1);
   CHECK_FALSE(diagnosis.battery().answered);
+  const auto& of_no_board = *lacking.find("power_status");
+  CHECK((!diagnosis.publishes(of_no_board) && !diagnosis.is_silent(of_no_board)));
+  StatusRequests requests{lacking};
+  const ocm::can::Received request{{}, ocm::protocol::once(amiro::PowerManagementStatus::id)};
+  requests.take(request, receiver.take(request));
+  CHECK_FALSE(requests.any(0));
+}
+
+TEST_CASE("diagnosis: bits behind those of a board's sensors name nothing") {
+  const Diagnosis diagnosis{amiro::catalogue};
+  CHECK(diagnosis.sensors_of(2, 0xFF) == "light_ring_status, light_ring_refusal");
+  CHECK(diagnosis.sensors_of(2, 0xFC).empty());
+}
+
+TEST_CASE("diagnosis: a battery is too hot or too cold at the limit, and not a degree before it") {
+  const auto& batteries = *amiro::catalogue.find("batteries");
+  std::vector<ocm::protocol::Field> fields{batteries.frames[0].fields.begin(),
+                                           batteries.frames[0].fields.end()};
+  for (auto& field : fields) {
+    if (field.name != "temperature") continue;
+    field.is_signed = true;
+    field.scale = {1, 0};
+    field.offset = {};
+  }
+  auto layout = batteries.frames[0];
+  layout.fields = fields;
+  const std::vector layouts{layout};
+  auto topic = batteries;
+  topic.frames = layouts;
+  const std::vector topics{topic};
+  const ocm::protocol::Catalogue whole_degrees{"other", 500'000, amiro::catalogue.boards, topics};
+  const auto found = [&](int degrees) {
+    amiro::Batteries sample;
+    sample.battery[0].set_voltage_V(3.8);
+    sample.battery[0].temperature = static_cast<std::uint16_t>(degrees);
+    Receiver receiver{whole_degrees};
+    Diagnosis diagnosis{whole_degrees};
+    diagnosis.take(receiver.take({{}, ocm::protocol::sample_frame(sample, Priority::low, 0)}));
+    REQUIRE(diagnosis.batteries().all.size() == 1);
+    CHECK(diagnosis.batteries().all[0].temperature_celsius == degrees);
+    std::string all;
+    for (const Finding& finding : diagnosis.findings()) all += finding.what + ": " + finding.remedy;
+    return all;
+  };
+  CHECK(found(59).empty());
+  CHECK(found(60) == "battery_1 is too hot: switch the robot off and let it cool");
+  CHECK(found(-19).empty());
+  CHECK(found(-20) == "battery_1 is too cold: let it get warm before it is used");
 }
 
 TEST_CASE("diagnosis: each finding by itself, at its limit and before it") {

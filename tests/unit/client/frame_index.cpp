@@ -64,6 +64,7 @@ TEST_CASE("an index of nothing finds nothing") {
   CHECK_FALSE(empty.find(sensor(0x10)));
   CHECK(empty.requested(to_board(0x10)) == nullptr);
   CHECK_FALSE(empty.subject(0x18FE'F100, ocm::can::Format::extended));
+  CHECK_FALSE(empty.known(0x123, ocm::can::Format::base).accepts(1));
 }
 
 TEST_CASE("the subject of a frame is a request, a frame of a topic, or unknown") {
@@ -123,6 +124,8 @@ TEST_CASE("a message is known by its identifier and format, or by its group") {
   CHECK(name_of(0x18F0'04FE, Format::extended) == "group");  // another priority
   CHECK(name_of(0x18F0'0417, Format::extended) == "exact");  // before its group
   CHECK(name_of(0x18F0'0500, Format::extended).empty());
+  CHECK(name_of(0x0000'F004, Format::extended).empty());  // a group's number is no identifier
+  CHECK(name_of(0x1000'F004, Format::extended).empty());
   CHECK(name_of(0x1CEF'9922, Format::extended) == "to_one");  // any destination
   CHECK_FALSE(index.find(Identifier::decode(0x123)));         // no frame of a topic
 }

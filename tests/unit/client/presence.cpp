@@ -91,4 +91,16 @@ TEST_CASE("presence: a board without a status is not asked") {
   }
 }
 
+TEST_CASE("presence: of a board that the catalogue lacks nothing is known") {
+  protocol::Catalogue lacking = amiro::catalogue;
+  lacking.boards = lacking.boards.first(2);
+  Presence presence{lacking};
+  presence.sent(light);  // of the third board
+  presence.take(protocol::sample_frame(amiro::LightRingStatus{}, protocol::Priority::low, 0));
+  CHECK(presence.signs().empty());
+  CHECK(presence.unheard().empty());
+  presence.sent(drive);
+  CHECK(names(presence) == std::vector<std::string>{"di_wheel_drive_status"});
+}
+
 }  // namespace client_presence_test

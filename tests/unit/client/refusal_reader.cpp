@@ -55,6 +55,7 @@ TEST_CASE("refusal reader: other samples, and numbers that the board does not ha
   CHECK_FALSE(bus.hear(0x3C, 1));  // a light of another board
   CHECK(bus.hear(0x05, 2)->count == 1);
   CHECK(bus.reader.refusal_topic(0) != nullptr);
+  CHECK(bus.reader.refusal_topic(amiro::catalogue.boards.size()) == nullptr);
   CHECK(bus.reader.refusal_topic(99) == nullptr);
   CHECK(RefusalReader::longest_wait(*bus.reader.refusal_topic(0)) ==
         bus.reader.refusal_topic(0)->deadline + 100ms);

@@ -127,6 +127,16 @@ TEST_CASE("a listener that joins in the middle of a sample has lost nothing") {
   CHECK(receiver.counters().incomplete == 0);
 }
 
+TEST_CASE("a listener that joins in the middle of a sample misses what the next one lacks") {
+  Receiver receiver{amiro::catalogue};
+  for (const char* text : {"606#01000000", "607#01000000",                   // has begun before
+                           "605#01000000", "606#01000000",                   // lacks its end
+                           "605#01000000", "606#01000000", "607#01000000"})  // is whole
+    static_cast<void>(take(receiver, text));
+  CHECK(receiver.counters().samples == 1);
+  CHECK(receiver.counters().incomplete == 1);
+}
+
 TEST_CASE("what a frame is") {
   Receiver receiver{amiro::catalogue};
   CHECK(take(receiver, "208#01F40100").meaning == Meaning::request);
@@ -322,6 +332,96 @@ TEST_CASE("nothing is put together unless asked for, of frames of 11 bits, or wi
   CHECK(take(receiver, "400#20110003FFECFE00").meaning == Meaning::unknown);
   CHECK(take(receiver, "1CECFF00#R8").meaning == Meaning::unknown);
   CHECK(receiver.transports_open() == 0);
+}
+
+TEST_CASE("nothing is put together where no message has a parameter group, and of CAN FD neither") {
+  protocol::FrameLayout layout;
+  layout.length = 8;
+  layout.address = {protocol::Address::By::identifier, true, 0x123};
+  protocol::Topic topic;
+  topic.name = "plain";
+  topic.kind = protocol::Kind::message;
+  topic.frames = {&layout, 1};
+  const protocol::Catalogue car{"car", 500'000, {}, {&topic, 1}};
+  Receiver plain{car, client::Transport::together};
+  for (const auto text : {announcement, packets[0], packets[1], packets[2]})
+    CHECK(take(plain, text).meaning == Meaning::unknown);
+  CHECK(plain.counters().transport == 0);
+  CHECK(plain.transports_open() == 0);
+  CHECK(plain.transport_counters().announced == 0);
+
+  Receiver receiver{truck, client::Transport::together};
+  CHECK(take(receiver, "18FEED00#0102030405060708").meaning == Meaning::unknown);  // another group
+  constexpr std::array<std::uint8_t, 64> bytes{32, 17, 0, 3, 0xFF, 0xEC, 0xFE, 0};
+  const std::span<const std::uint8_t> all{bytes};
+  CHECK(receiver.take({0x1CEC'FF00, can::Format::extended, true, all.first(8)}, base::Time{}).meaning ==
+        Meaning::unknown);
+  CHECK(receiver.transports_open() == 0);
+  CHECK(receiver.counters().transport == 0);
+  CHECK(receiver.counters().unknown == 1);
+  CHECK(receiver.counters().fd == 1);
+}
+
+TEST_CASE("a catalogue may have the frames of the transport protocol themselves") {
+  protocol::FrameLayout layout;
+  layout.length = 8;
+  layout.address = {protocol::Address::By::pgn, true, 0x1CEC'FFFE};
+  std::array<protocol::Topic, 2> topics{groups[0], groups[0]};
+  topics[1].name = "TPCM";
+  topics[1].frames = {&layout, 1};
+  const protocol::Catalogue both{"both", 250'000, {}, topics};
+  Receiver receiver{both, client::Transport::together};
+  const auto announced = take(receiver, announcement);
+  CHECK(announced.meaning == Meaning::sample);
+  CHECK(announced.topic == &topics[1]);
+  CHECK(take(receiver, packets[0]).meaning == Meaning::transport);
+  CHECK(take(receiver, packets[1]).meaning == Meaning::transport);
+  const auto whole = take(receiver, packets[2]);
+  CHECK(whole.meaning == Meaning::sample);
+  CHECK(whole.topic == &topics[0]);
+  CHECK(receiver.counters().samples == 2);
+  CHECK(receiver.counters().transport == 2);
+  CHECK(receiver.transport_counters().complete == 1);
+}
+
+TEST_CASE("a frame is of the message that is on its interface") {
+  std::array<protocol::FrameLayout, 2> layouts{};
+  std::array<protocol::Topic, 2> topics{};
+  for (std::size_t i = 0; i < topics.size(); ++i) {
+    layouts[i].length = 1;
+    layouts[i].address = {protocol::Address::By::identifier, false, 0x123};
+    topics[i].kind = protocol::Kind::message;
+    topics[i].bus = i == 0 ? "can0" : "can1";
+    topics[i].frames = {&layouts[i], 1};
+  }
+  const protocol::Catalogue car{"car", 500'000, {}, topics};
+  Receiver receiver{car};
+  CHECK(receiver.has_buses());
+  receiver.on_interface(4, "can0");
+  receiver.on_interface(2, "can1");
+  const can::Frame frame{0x123, 1, {}};
+  const auto on = [&](std::uint16_t bus) {
+    return receiver.take(can::FrameView{frame}, base::Time{}, bus).topic;
+  };
+  CHECK(on(4) == &topics[0]);
+  CHECK(on(2) == &topics[1]);
+  CHECK_FALSE(Receiver{amiro::catalogue}.has_buses());
+}
+
+TEST_CASE("a message is no struct of a topic, whatever its number") {
+  protocol::FrameLayout layout;
+  layout.length = 8;
+  layout.address = {protocol::Address::By::identifier, false, 0x123};
+  protocol::Topic topic;
+  topic.id = amiro::Gyroscope::id;
+  topic.kind = protocol::Kind::message;
+  topic.frames = {&layout, 1};
+  const protocol::Catalogue car{"car", 500'000, {}, {&topic, 1}};
+  Receiver receiver{car};
+  const auto reception = take(receiver, "123#3E001E00FCFF0000");
+  REQUIRE(reception.meaning == Meaning::sample);
+  REQUIRE(reception.sample.bytes.size() == 8);
+  CHECK(reception.sample.as<amiro::Gyroscope>().error == base::Error::unknown_topic);
 }
 
 }  // namespace client_sample_test

@@ -77,6 +77,37 @@ TEST_CASE("a task that is not served in time is counted as its own, not among th
   CHECK(controller.counters().late == 0);
 }
 
+TEST_CASE("what the second task could not keep up with is the second's") {
+  Mailboxes bus;
+  WithTasks controller{bus};
+  int calls = 0;
+  controller.every<1>(10ms, Level::low, [&] { ++calls; });
+  controller.poll(at(0ms));
+  controller.poll(at(45ms));
+  CHECK(calls == 2);
+  CHECK(controller.task_overload(1) == scheduling::Overload{3, 1, 0});
+  CHECK(controller.task_overload(0) == scheduling::Overload{});
+}
+
+TEST_CASE("overload of the first sensor is in the sum, too") {
+  Board board;
+  board.controller.serve<amiro::Odometry>([] { return base::Result<amiro::Odometry>{amiro::Odometry{}}; });
+  board.receive("203#010A0000", 0s);  // every 10 ms
+  board.controller.poll(at(35ms));
+  CHECK(board.controller.overload(0) == scheduling::Overload{2, 1, 0});
+  CHECK(board.controller.counters().missed == 2);
+  CHECK(board.controller.counters().late == 1);
+}
+
+TEST_CASE("a frame says how late it is: what could not be kept up with until then is counted") {
+  Board board;
+  board.receive("208#010A0000", 0s);  // every 10 ms
+  CHECK(board.controller.counters().missed == 0);
+  board.controller.receive(frame("21F#02"), at(35ms));  // of another board
+  CHECK(board.controller.counters().missed == 2);       // 10 and 20; the one at 30 can still be taken
+  CHECK(board.controller.next_event() == at(10ms));
+}
+
 TEST_CASE("overload is counted for each topic, and in sum") {
   Board board;
   board.receive("208#010A0000", 0s);  // every 10 ms

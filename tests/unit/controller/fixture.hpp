@@ -1,6 +1,8 @@
 /// A board on a bus with a few mailboxes, for the tests of this floor.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -43,6 +45,12 @@ inline std::vector<std::string> texts(const Mailboxes& bus) {
 inline base::Time at(base::Duration offset) {
   return base::Time{offset};
 }
+
+/// Any number of sensors, for a board that has more of them than a report has bits.
+template <std::size_t Number>
+struct Part : amiro::Accelerometer {
+  static constexpr protocol::TopicId id{static_cast<std::uint8_t>(0x40 + Number)};
+};
 
 /// DiWheelDrive with everything served: each sample says how many there were.
 struct Board {

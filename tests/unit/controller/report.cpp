@@ -1,5 +1,8 @@
 #include "ocm/controller/report.hpp"
 
+#include <cstddef>
+#include <utility>
+
 #include <catch2/catch.hpp>
 
 #include "unit/controller/fixture.hpp"
@@ -82,6 +85,32 @@ TEST_CASE("status: bits by the order of the board's sensors") {
   CHECK(status.health.faults == 0b0010);
   board.receive("204#00", 20ms);
   CHECK(ask_status(board, 30ms).health.publishing == 0b1000);
+}
+
+template <std::size_t... Number>
+protocol::TopicList<Status, Part<Number>...> crowd(std::index_sequence<Number...>);
+struct Crowded {  // 33 sensors
+  using sensors = decltype(crowd(std::make_index_sequence<32>{}));
+  using actuators = amiro::DiWheelDrive::actuators;
+  using status = Status;
+  using refusal = void;
+  static constexpr std::uint32_t wire_hash = amiro::wire_hash;
+};
+
+TEST_CASE("status: a sensor that has no bit shows in none") {
+  Mailboxes bus;
+  controller::Controller<Crowded, Mailboxes> controller{bus};
+  controller.serve<Part<31>>([] { return base::Result<Part<31>>{base::Error::no_answer}; });
+  controller.receive(frame("25F#01"), at(0s));
+  controller.poll(at(0s));
+  CHECK(controller.active(32));
+  CHECK(controller.counters().not_sampled == 1);
+  controller.receive(frame("31B#02"), at(1ms));
+  controller.poll(at(1ms));
+  REQUIRE(bus.frames.size() == 2);
+  const Status status = Status::decode({bus.frames[0].data, bus.frames[1].data});
+  CHECK(status.health.publishing == 0);
+  CHECK(status.health.faults == 0);
 }
 
 TEST_CASE("status: the first sensor has the lowest bit") {
@@ -167,6 +196,19 @@ TEST_CASE("refusal: who publishes it is not cut off by one") {
   CHECK(board.controller.next_event() == at(1s));
   board.controller.poll(at(1s));
   CHECK(texts(board.bus) == std::vector<std::string>{"71D#0000000000000000", "71D#0804010000000000"});
+}
+
+TEST_CASE("status: eight bits for sensors, and errors of which there are more than a counter holds") {
+  controller::Health health;
+  health.bus_errors = 0xFFFF'FFFF;
+  controller::Activity activity;
+  activity.publishing = 0x181;
+  activity.faults = 0x17E;
+  activity.send_failed = 2;
+  const auto status = controller::make_status<Status>(health, activity);
+  CHECK(status.health.publishing == 0x81);
+  CHECK(status.health.faults == 0x7E);
+  CHECK(status.health.bus_errors == 65'535);
 }
 
 TEST_CASE("a number beyond its field stays at its end") {

@@ -44,6 +44,28 @@ TEST_CASE("DLC 1 publishes at the topic's own period") {
   CHECK(board.controller.next_event() == at(100ms));
 }
 
+template <std::size_t... Number>
+protocol::TopicList<Part<Number>...> parts(std::index_sequence<Number...>);
+
+TEST_CASE("faults: a bit for each of the first 32 sensors, and none for those behind them") {
+  controller::SensorHandler<decltype(parts(std::make_index_sequence<33>{}))> handler;
+  handler.serve<Part<0>>([](base::Time) { return base::Result<Part<0>>{base::Error::no_answer}; });
+  handler.serve<Part<31>>([](base::Time) { return base::Result<Part<31>>{base::Error::no_answer}; });
+  handler.serve<Part<32>>([](base::Time) { return base::Result<Part<32>>{base::Error::no_answer}; });
+  scheduling::Cooperative port;
+  Mailboxes bus;
+  protocol::Counters counters;
+  const auto faults_after = [&](std::size_t sensor) {
+    const scheduling::Release release{.stream = sensor};
+    CHECK(handler.run(sensor, release, port, bus, counters) == scheduling::Outcome::done);
+    return handler.faults();
+  };
+  CHECK(faults_after(32) == 0);
+  CHECK(faults_after(31) == 0x8000'0000);
+  CHECK(faults_after(0) == 0x8000'0001);
+  CHECK(counters.not_sampled == 3);
+}
+
 /// Remembers what it was asked and told.
 struct Bookkeeper {
   struct Entry {

@@ -263,4 +263,37 @@ TEST_CASE("a timer that goes off early or for nothing does no harm") {
   CHECK(setup.releases.size() == 2);
 }
 
+TEST_CASE("the streams that publish are counted, from the first to the last") {
+  Setup setup;
+  CHECK(setup.dispatcher.active() == 0);
+  setup.dispatcher.start(0, 10ms, Level::low, at(0ms));
+  setup.dispatcher.start(3, 10ms, Level::urgent, at(0ms));
+  setup.dispatcher.once(1, Level::low, at(50ms));  // is no publisher
+  CHECK(setup.dispatcher.active() == 2);
+  CHECK(setup.dispatcher.active(0));
+  CHECK_FALSE(setup.dispatcher.active(1));
+  CHECK(setup.dispatcher.active(3));
+  setup.dispatcher.stop(0);
+  CHECK(setup.dispatcher.active() == 1);
+}
+
+TEST_CASE("what waits is known on each level, and what is resumed is neither late nor has it missed any") {
+  for (const Level level : {Level::urgent, Level::high, Level::medium, Level::low}) {
+    Setup setup;
+    bool room = false;
+    setup.job = [&](const Release&) { return room ? Outcome::done : Outcome::waits; };
+    setup.dispatcher.start(2, 10ms, level, at(0ms), 1ms);
+    CHECK_FALSE(setup.dispatcher.waiting());
+    setup.pass_to(45ms);
+    CHECK(setup.dispatcher.waiting());
+    setup.dispatcher.stop(2);
+    room = true;
+    setup.dispatcher.wake();
+    setup.pass_to(46ms);
+    REQUIRE(setup.releases.size() == 2);
+    CHECK(setup.releases[1] == Release{2, level, {}, 0, false, true});
+    CHECK_FALSE(setup.dispatcher.waiting());
+  }
+}
+
 }  // namespace scheduling_dispatcher_test

@@ -27,6 +27,22 @@ struct Port {
   int sections = 0;
 };
 
+template <class T, class P>
+concept Boxed = requires {
+  typename Mailbox<T, P>;
+};
+struct Owner {  // more than bytes to copy
+  ~Owner() {}
+};
+struct Lockless {};
+struct Guardless {
+  void lock();
+};
+static_assert(Boxed<int, Port>);
+static_assert(!Boxed<Owner, Port>);
+static_assert(!Boxed<int, Lockless>);
+static_assert(!Boxed<int, Guardless>);
+
 TEST_CASE("mailbox: what was put last is taken once", "[mailbox]") {
   Port port;
   Mailbox<int, Port> box{port};

@@ -28,6 +28,11 @@ struct WithoutTimer {
   void pend(Level);
   Guard lock();
 };
+struct WithoutLevels {
+  base::Time now();
+  void arm(base::Time);
+  Guard lock();
+};
 struct InTicks {  // of a clock of its own: what is armed would mean something else
   std::uint64_t now();
   void arm(base::Time);
@@ -44,8 +49,18 @@ struct WithoutGuard {
 static_assert(Port<Whole>);
 static_assert(Port<scheduling::Cooperative>);
 static_assert(!Port<WithoutTimer>);
+static_assert(!Port<WithoutLevels>);
 static_assert(!Port<InTicks>);
 static_assert(!Port<WithoutGuard>);
+
+struct Watching : Whole {
+  void ran(Level);
+};
+struct WatchingAlone {
+  void ran(Level);
+};
+static_assert(scheduling::LevelWatcher<Watching>);
+static_assert(!scheduling::LevelWatcher<Whole> && !scheduling::LevelWatcher<WatchingAlone>);
 
 /// The example of docs/porting.md, on the functions of an RTOS that it calls.
 struct FreeRtos {

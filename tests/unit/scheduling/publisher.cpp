@@ -100,6 +100,23 @@ constexpr bool lateness_is_judged_by_the_jitter() {
 }
 static_assert(lateness_is_judged_by_the_jitter());
 
+constexpr bool a_jitter_below_zero_is_zero_and_a_very_long_one_is_none() {
+  const auto late = [](base::Duration jitter, base::Duration after) {
+    Publisher<1> publisher;
+    publisher.start(0, 1h, Level::medium, at(0ms), jitter);
+    Release release;
+    return take(publisher, at(after), release) && release.late;
+  };
+  for (const base::Duration least : {base::Duration{0}, base::Duration{-1}, base::Duration::min()})
+    if (late(least, 0ns) || !late(least, 1ns)) return false;
+  constexpr base::Duration most{UINT32_MAX - 1};
+  if (late(most, most) || !late(most, most + 1ns)) return false;
+  for (const base::Duration none : {most + 1ns, most + 2ns, base::Duration{5s}, base::Duration::max()})
+    if (late(none, 30min)) return false;
+  return true;
+}
+static_assert(a_jitter_below_zero_is_zero_and_a_very_long_one_is_none());
+
 constexpr bool within_a_priority_the_earliest_grid_point_goes_first() {
   Publisher<3> publisher;
   publisher.start(0, 1s, Level::medium, at(2ms));
@@ -183,6 +200,7 @@ constexpr bool due_says_whom_to_call_and_when_to_look_again() {
 static_assert(due_says_whom_to_call_and_when_to_look_again());
 
 static_assert(sizeof(Publisher<17>) == 17 * 40 + 8);
+static_assert(Release{} == Release{0, Level::medium, base::Time{}, 0, false, false});
 
 TEST_CASE("a stop takes effect before the next release") {
   Publisher<2> publisher;

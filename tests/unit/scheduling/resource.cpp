@@ -41,6 +41,14 @@ struct Plain : private Mutex {
   using Mutex::unlock;
 };
 static_assert(scheduling::Lockable<Mutex> && scheduling::Lockable<Plain>);
+struct OnlyLocked {
+  void lock() {}
+};
+struct OnlyUnlocked {
+  void unlock() {}
+};
+static_assert(!scheduling::Lockable<OnlyLocked> && !scheduling::Lockable<OnlyUnlocked>);
+static_assert(scheduling::Lockable<scheduling::NoMutex>);
 
 template <class M>
 struct Reference {  // so that the test keeps the mutex in its hands

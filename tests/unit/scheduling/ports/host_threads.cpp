@@ -1,6 +1,10 @@
 #include "ocm/scheduling/ports/host_threads.hpp"
 
+#include <array>
 #include <atomic>
+#include <chrono>
+#include <string>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -71,12 +75,50 @@ TEST_CASE("who gets no real-time priorities gets the reason, and what to do") {
   std::thread{[&] { permitted = pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameter); }}.join();
   CHECK(asked.shortfall().has_value() == (permitted != 0));
   if (asked.shortfall()) {
-    CHECK(asked.shortfall()->what.find("real-time") != std::string::npos);
-    CHECK(asked.shortfall()->remedy.find("ulimit -r") != std::string::npos);
+    CHECK(asked.shortfall()->what ==
+          "no real-time priorities for the levels: " + std::generic_category().message(permitted.load()));
+    CHECK(asked.shortfall()->remedy ==
+          "run it with CAP_SYS_NICE, or permit them (ulimit -r 14); until then an urgent level does not stop "
+          "one that runs");
   }
   HostThreads not_asked{HostThreadsOptions{false, 10}};
-  REQUIRE(not_asked.start([] {}, [](Level) {}).ok());
-  CHECK(not_asked.shortfall().has_value());
+  const auto started = not_asked.start([] {}, [](Level) {});
+  REQUIRE(started.ok());
+  CHECK(*started);
+  REQUIRE(not_asked.shortfall().has_value());
+  CHECK(not_asked.shortfall()->what == "real-time priorities were not asked for");
+  CHECK(not_asked.shortfall()->remedy.empty());
+}
+
+TEST_CASE("each level has a real-time priority above the next, the timer the highest, or none has any") {
+  Threads<true> setup;
+  std::array<std::atomic<int>, 5> priorities{};  // of the levels and the timer; 0: not a real-time one
+  for (auto& priority : priorities) priority = -1;
+  const auto own = [] {
+    int policy = 0;
+    sched_param parameter{};
+    pthread_getschedparam(pthread_self(), &policy, &parameter);
+    return policy == SCHED_FIFO ? parameter.sched_priority : 0;
+  };
+  setup.attach([&] { priorities[4] = own(); },
+               [&](Level level) { priorities[static_cast<std::size_t>(level)] = own(); });
+  for (const Level level : conformance::levels) conformance::pend(setup, level);
+  conformance::arm(setup, setup.port().now());
+  for (auto& priority : priorities) conformance::wait_for(setup, [&] { return priority >= 0; });
+  setup.stop();
+  const bool strict = !setup.threads.shortfall().has_value();
+  for (int level = 0; level < 4; ++level)
+    CHECK(priorities[static_cast<std::size_t>(level)] == (strict ? 13 - level : 0));
+  CHECK(priorities[4] == (strict ? 14 : 0));
+}
+
+TEST_CASE("the time of host threads is the system's monotonic one") {
+  const HostThreads threads;
+  const auto before = std::chrono::steady_clock::now();
+  const base::Time now = threads.now();
+  const auto after = std::chrono::steady_clock::now();
+  CHECK(now.time_since_epoch() >= before.time_since_epoch());
+  CHECK(now.time_since_epoch() <= after.time_since_epoch());
 }
 
 TEST_CASE("threads that were never started, started and stopped at once, or stopped twice") {
