@@ -185,6 +185,20 @@ static_assert(get(std::span{two_signals}, {35, 12, ByteOrder::big}, true) == -10
 static_assert(get(two_signals, {12, 12, ByteOrder::little}, true) == -806);
 static_assert(get(two_signals, {35, 12, ByteOrder::big}, true) == -1075);
 
+// As short as they may be: the compiler refuses to look beyond their ends.
+constexpr std::array<std::uint8_t, 3> up_to_little{0x00, 0xA0, 0xCD};
+constexpr std::array<std::uint8_t, 6> up_to_big{0x00, 0x00, 0x00, 0x00, 0x0B, 0xCD};
+static_assert(get(std::span{up_to_little}, {12, 12, ByteOrder::little}, true) == -806);
+static_assert(get(std::span{up_to_big}, {35, 12, ByteOrder::big}, true) == -1075);
+template <std::size_t Bytes>
+constexpr std::array<std::uint8_t, Bytes> put_into(Position position, std::int64_t value) {
+  std::array<std::uint8_t, Bytes> data{};
+  put(std::span{data}, position, value);
+  return data;
+}
+static_assert(put_into<3>({12, 12, ByteOrder::little}, -806) == up_to_little);
+static_assert(put_into<6>({35, 12, ByteOrder::big}, -1075) == up_to_big);
+
 static_assert(Position{0, 8, ByteOrder::little}.bytes() == 1);
 static_assert(Position{1, 8, ByteOrder::little}.bytes() == 2);
 static_assert(Position{7, 8, ByteOrder::big}.bytes() == 1);

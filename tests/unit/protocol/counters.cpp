@@ -29,6 +29,13 @@ TEST_CASE("every counter is reported, once and by its own name") {
   CHECK(told == std::vector<std::uint32_t>(numbers, numbers + count));
 }
 
+TEST_CASE("every counter begins at zero") {
+  for_each(Counters{}, [](std::string_view name, std::uint32_t value) {
+    INFO(name);
+    CHECK(value == 0);
+  });
+}
+
 TEST_CASE("a refusal is counted under its cause") {
   struct Case {
     Error cause;
@@ -38,7 +45,8 @@ TEST_CASE("a refusal is counted under its cause") {
        {Case{Error::bad_length, &Counters::bad_length}, Case{Error::bad_mode, &Counters::bad_mode},
         Case{Error::bad_unit, &Counters::bad_unit}, Case{Error::bad_period, &Counters::bad_period},
         Case{Error::unknown_topic, &Counters::not_served},
-        Case{Error::not_schedulable, &Counters::not_schedulable}}) {
+        Case{Error::not_schedulable, &Counters::not_schedulable},
+        Case{Error::no_answer, &Counters::failed}}) {
     Counters counters;
     counters.refuse(cause);
     Counters expected;

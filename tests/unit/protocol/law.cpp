@@ -20,6 +20,8 @@ constexpr Law law{{1, 0}, {100, 0}, {4, 0}, {1, -2}, {5, -1}};
 
 static_assert(square_root(0) == 0 && square_root(-1) == 0 && square_root(1) == 1 && square_root(4) == 2);
 static_assert(square_root(0.25) == 0.5 && square_root(0x1p-40) == 0x1p-20 && square_root(1e20) == 1e10);
+static_assert(square_root(std::numeric_limits<double>::max()) > 1.34e154 &&
+              square_root(std::numeric_limits<double>::max()) < 1.341e154);
 static_assert(square_root(std::numeric_limits<double>::infinity()) ==
               std::numeric_limits<double>::infinity());
 
@@ -30,6 +32,8 @@ static_assert(rounded(7, 4) == Decimal{7, 0});
 static_assert(rounded(0, 4) == Decimal{} && rounded(-1, 4) == Decimal{});
 static_assert(rounded(std::numeric_limits<double>::infinity(), 4) == Decimal{});
 static_assert(rounded(1e300, 4) == Decimal{} && rounded(1e-300, 4) == Decimal{});
+static_assert(rounded(1e18, 4) == Decimal{1, 18} && rounded(1e-18, 4) == Decimal{1, -18});
+static_assert(rounded(1.001e18, 4) == Decimal{} && rounded(0.999e-18, 4) == Decimal{});
 
 static_assert(law.value(101) == 1 && law.value(104) == 0.5 && law.value(200) == 0.1);
 static_assert(law.value(100) == std::numeric_limits<double>::infinity());

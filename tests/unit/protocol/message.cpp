@@ -73,6 +73,27 @@ TEST_CASE("a plain message is its bytes, in a frame of its identifier") {
   STATIC_REQUIRE(!message_from<Short>(frame("123#R2")));
 }
 
+struct Full : Short {
+  static constexpr std::size_t length = 8;
+};
+struct Long : Short {
+  static constexpr std::size_t length = 9;
+};
+struct Fast : Short {
+  static constexpr bool fd = true;
+};
+template <class T>
+concept HasFrame = requires(const T& message) {
+  message_frame(message);
+};
+
+TEST_CASE("a message of more than eight bytes, or of CAN FD, has no classic frame") {
+  STATIC_REQUIRE(HasFrame<Short>);
+  STATIC_REQUIRE(HasFrame<Full>);
+  STATIC_REQUIRE_FALSE(HasFrame<Long>);
+  STATIC_REQUIRE_FALSE(HasFrame<Fast>);
+}
+
 TEST_CASE("a message of J1939 is its parameter group, from any sender") {
   STATIC_REQUIRE(message_from<Group>(frame("0CF00400#ABCD"))->bytes[0] == 0xAB);
   STATIC_REQUIRE(!message_from<Group>(frame("0CF00500#ABCD")));

@@ -29,6 +29,9 @@ TEST_CASE("a raw number stays within the range") {
   STATIC_REQUIRE(nearest_raw<std::uint64_t>(-1, 0, UINT64_MAX) == 0);
   STATIC_REQUIRE(nearest_raw<std::uint64_t>(2.5, 0, UINT64_MAX) == 3);
   STATIC_REQUIRE(nearest_raw<std::uint64_t>(2e19, 0, UINT64_MAX) == UINT64_MAX);
+  // The nearest doubles to the greatest numbers, which are one more.
+  STATIC_REQUIRE(nearest_raw<std::int64_t>(0x1p63, INT64_MIN, INT64_MAX) == INT64_MAX);
+  STATIC_REQUIRE(nearest_raw<std::uint64_t>(0x1p64, 0, UINT64_MAX) == UINT64_MAX);
   CHECK(nearest_raw<std::int16_t>(-std::numeric_limits<double>::infinity(), low, high) == -32768);
 }
 
@@ -37,6 +40,8 @@ TEST_CASE("not a number is the nearest to zero, so that nothing moves") {
   STATIC_REQUIRE(nearest_raw<std::int16_t>(nan, low, high) == 0);
   STATIC_REQUIRE(nearest_raw<std::int16_t>(nan, 5, 9) == 5);
   STATIC_REQUIRE(nearest_raw<std::int16_t>(nan, -9, -5) == -5);
+  STATIC_REQUIRE(nearest_raw<std::int16_t>(nan, 1, 9) == 1);
+  STATIC_REQUIRE(nearest_raw<std::int16_t>(nan, -9, -1) == -1);
 }
 
 TEST_CASE("a floating-point number stays within a range") {
@@ -50,6 +55,9 @@ TEST_CASE("a floating-point number stays within a range") {
   STATIC_REQUIRE(within(nan, -1, 1) == 0);
   STATIC_REQUIRE(within(nan, 5, 9) == 5);
   STATIC_REQUIRE(within(nan, -9, -5) == -5);
+  STATIC_REQUIRE(within(nan, -0.5, 0.5) == 0);
+  STATIC_REQUIRE(within(nan, 0.5, 9) == 0.5);
+  STATIC_REQUIRE(within(nan, -9, -0.5) == -0.5);
 }
 
 }  // namespace protocol_physical_test

@@ -27,6 +27,19 @@ using ocm::test::catalogue;
 using ocm::test::Lamp;
 using ocm::test::Scale;
 
+// What is not said.
+static_assert(ocm::protocol::NamedValue{}.raw == 0);
+static_assert(ocm::protocol::SelectorRange{}.first == 0 && ocm::protocol::SelectorRange{}.last == 0);
+static_assert(Field{}.scale == Decimal{1, 0} && Field{}.offset == Decimal{} && !Field{}.is_signed);
+static_assert(Field{}.raw_min == 0 && Field{}.raw_max == 0 && Field{}.start == 0 && !Field{}.flags);
+static_assert(Field{}.min == Decimal{} && Field{}.max == Decimal{});
+static_assert(Field{}.selector == ocm::protocol::no_selector);
+static_assert(Field{}.derived_from == 0 && !Field{}.uncertainty);
+static_assert(!ocm::protocol::Address{}.extended && ocm::protocol::Address{}.number == 0);
+static_assert(!ocm::protocol::FrameLayout{}.fd && ocm::protocol::FrameLayout{}.bit_rate_switch);
+static_assert(Topic{}.board == 0 && Topic{}.instance == 0);
+static_assert(ocm::protocol::FrameRef{}.frame == 0 && ocm::protocol::Catalogue{}.bit_rate == 0);
+
 // --- fields ---
 
 constexpr const Field& weight = ocm::test::weight_fields[0];
@@ -336,6 +349,16 @@ TEST_CASE("a selector may be selected itself, to any depth, but not in a circle"
   CHECK_FALSE(Selected{{none, 4, none, none}}.has(1, {1, 1, 1, 1}));  // there is no such field
 }
 
+constexpr Field selected_by(std::uint16_t selector) {
+  Field field = number(Number::integer, 8);
+  field.selector = selector;
+  return field;
+}
+// One that names the field behind the last: nothing is read there.
+constexpr std::array<Field, 1> astray{selected_by(1)};
+constexpr std::array<std::uint8_t, 1> one_byte{};
+static_assert(!ocm::protocol::FrameLayout{"", TopicId{0x10}, 1, astray}.has(astray[0], one_byte));
+
 TEST_CASE("which fields a frame has together") {
   using Layout = ocm::protocol::FrameLayout;
   static constexpr ocm::protocol::Law law{{1, 0}, {100, 0}, {4, 0}, {1, -2}, {5, -1}};
@@ -390,6 +413,14 @@ TEST_CASE(
 }
 
 // --- what else a catalogue says ---
+
+constexpr Topic on_board(std::uint8_t board) {
+  Topic topic;
+  topic.board = board;
+  return topic;
+}
+static_assert(catalogue.board_name(on_board(0)) == "left" && catalogue.board_name(on_board(1)) == "right");
+static_assert(catalogue.board_name(on_board(2)).empty());  // there are two
 
 TEST_CASE("a message is in a catalogue what a topic is not") {
   using ocm::protocol::Address;

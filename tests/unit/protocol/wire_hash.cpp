@@ -56,6 +56,27 @@ static_assert(changes([](Robot& r) { r.fields[0].scale = {1, -2}; }));
 static_assert(changes([](Robot& r) { r.fields[0].offset = {-40, 0}; }));
 static_assert(changes([](Robot& r) { r.fields[0].scale.exponent = -5; }));
 
+static_assert(changes([](Robot& r) { r.fields[0].number = Number::float32; }));
+
+template <class Change>
+constexpr std::uint32_t hash_with(Change change) {
+  Robot robot;
+  change(robot);
+  return robot.hash();
+}
+/// The first one is a message of this address.
+constexpr auto message(Address address) {
+  return [address](Robot& r) {
+    r.topics[0].kind = Kind::message;
+    r.frames[0].address = address;
+  };
+}
+constexpr Address speed{Address::By::identifier, false, 0x123};
+constexpr std::uint32_t with_speed = hash_with(message(speed));
+static_assert(with_speed != hash_with(message({Address::By::pgn, false, 0x123})));
+static_assert(with_speed != hash_with(message({Address::By::identifier, true, 0x123})));
+static_assert(with_speed != hash_with(message({Address::By::identifier, false, 0x124})));
+
 // What people call it does not, nor when it is sent, nor where it stands in the spec.
 static_assert(!changes([](Robot& r) { r.topics[0].name = "gyro"; }));
 static_assert(!changes([](Robot& r) { r.topics[0].source = "elsewhere"; }));
@@ -63,6 +84,7 @@ static_assert(!changes([](Robot& r) { r.fields[0].name = "roll"; }));
 static_assert(!changes([](Robot& r) { r.fields[0].raw_max = 100; }));
 static_assert(!changes([](Robot& r) { r.topics[0].period = {1, PeriodUnit::seconds}; }));
 static_assert(!changes([](Robot& r) { std::swap(r.topics[0], r.topics[1]); }));
+static_assert(!changes([](Robot& r) { r.frames[0].address = speed; }));  // a topic has none
 
 // Two topics that exchange their frames are another spec.
 static_assert(changes([](Robot& r) { std::swap(r.topics[0].frames, r.topics[1].frames); }));
@@ -78,6 +100,9 @@ TEST_CASE("wire_hash: FNV-1a, typed by hand for a catalogue that says nothing") 
 // Computed by hand in another language, from the rule in the header's comment and spec/topics.json. Boards
 // that were flashed have these numbers: they change with what is said on the bus, and with nothing else.
 static_assert(Robot{}.hash() == 0x32C9D8F7);
+static_assert(with_speed == 0xAACB737C);
+static_assert(hash_with(message({Address::By::pgn, true, 0x18FE'ECFE})) == 0x5DEF8F9A);
+static_assert(hash_with([](Robot& r) { r.fields[0].number = Number::float64; }) == 0x3EC5D57B);
 static_assert(wire_hash(amiro::catalogue) == 0xB206B975);
 static_assert(amiro::wire_hash == 0xB206B975, "the generated header has it at compile time");
 

@@ -29,6 +29,19 @@ static_assert(!fits(guard::tables, Room{.entry = 0}));
 static_assert(!fits(guard::tables, Room{.limits = 0}));
 static_assert(fits(guard::tables, Room{6, 3, 3, 1, 1, 0}));  // nothing to spare
 
+// One whose bus is judged by what no configuration streams: the compiler refuses to look behind the last one.
+constexpr std::array<Condition, 6> with_gyro = [] {
+  auto conditions = guard::conditions;
+  conditions[guard::bad_bus] = {.name = "gyro", .topic = topic_index(amiro::catalogue, "gyro"), .limit = 1};
+  return conditions;
+}();
+constexpr Operator unseen() {
+  Operator op = guard::tables;
+  op.conditions = with_gyro;
+  return op;
+}
+static_assert(first_mistake(unseen()).kind == Mistake::not_watched);
+
 /// The guard's tables, to be spoilt.
 struct Tables {
   std::vector<Stream> streams{guard::driving_streams.begin(), guard::driving_streams.end()};
@@ -520,6 +533,16 @@ TEST_CASE("check: monitors and transitions, and where they stand") {
              .name = "gyro", .topic = topic_index(amiro::catalogue, "gyro"), .limit = 1};
        },
        {.kind = Mistake::not_watched, .part = Part::transition, .configuration = none, .where = 2}},
+      {"at once, from anywhere that both leave",
+       [](Tables& t) {
+         t.transitions[2].precedence = 1;
+         t.transitions.push_back({"bus", any_configuration, guard::idle, 2, 1});
+       },
+       {.kind = Mistake::both_fire,
+        .part = Part::transition,
+        .configuration = guard::driving,
+        .where = 2,
+        .other = 6}},
       {"at once, and where",
        [](Tables& t) {
          t.transitions[2] = {"bus", guard::driving, guard::idle, 2};

@@ -152,6 +152,14 @@ constexpr bool is_in_time(const Operator& op, std::uint32_t bit_rate) {
   return fine;
 }
 static_assert(is_in_time(tables, 1'000'000));
+// So is one that is left from anywhere.
+constexpr std::array<Transition, 2> from_anywhere{{{"high", 0, 1, 0, 0}, {"asked", any_configuration, 0}}};
+constexpr Operator left_from_anywhere() {
+  Operator op = tables;
+  op.transitions = from_anywhere;
+  return op;
+}
+static_assert(is_in_time(left_from_anywhere(), 1'000'000));
 
 std::vector<Doubt> doubts(const Operator& op, std::uint32_t bit_rate = 1'000'000) {
   std::vector<Doubt> all;
@@ -185,6 +193,35 @@ TEST_CASE("proof: a change that takes longer than it may, to the nanosecond") {
   CHECK((all[0].from == 0 && all[0].configuration == 1));
 }
 
+TEST_CASE("proof: a change need not be in time where no transition makes it") {
+  Operator op = tables;
+  op.settle = base::Duration{settling - 1};
+  op.transitions = std::span{transitions}.first(3);  // there, and not back
+  const auto there = doubts(op);
+  REQUIRE(there.size() == 1);
+  CHECK((there[0].from == 0 && there[0].configuration == 1));
+  op.transitions = std::span{transitions}.last(1);  // back, and not there
+  CHECK(doubts(op).empty());
+}
+
+TEST_CASE("proof: a change of nothing but messages takes as long as the last one that is left") {
+  std::vector<protocol::Topic> all{topics.begin(), topics.end()};
+  all[0].kind = protocol::Kind::message;
+  const protocol::Catalogue sent_only{"two frames", 1'000'000, boards, all};
+  const std::vector<Configuration> both{{"heard", after, {}, {}, {}}, {"none", {}, {}, {}, {}}};
+  const std::vector<Transition> asked{{"there", 0, 1}, {"back", 1, 0}};
+  Operator op = tables;
+  op.catalogue = &sent_only;
+  op.configurations = both;
+  op.transitions = asked;
+  op.monitors = {};
+  op.conditions = {};
+  Proof<32> proof{op, 1'000'000};
+  // Nothing is stopped or asked for: reaction, handling, and a frame that is 2 ms late.
+  CHECK(proof.settling(0, 1) == 3'000'000 + 1'000'000 + 2'000'000 + 65'000);
+  CHECK(proof.settling(1, 0) == 3'000'000 + 1'000'000);
+}
+
 TEST_CASE("proof: a change of a period, by hand, and one of a stream that goes on") {
   std::vector<Stream> slower{{0, 40ms, protocol::Priority::high}};
   std::vector<Configuration> changed{configurations.begin(), configurations.end()};
@@ -196,6 +233,8 @@ TEST_CASE("proof: a change of a period, by hand, and one of a stream that goes o
   // long one, these three, and two of a grid that begins again just then.
   const std::int64_t queue = (135 + 65 + 65 + 95) * 1000;
   CHECK(proof.settling(0, 1) == 3'000'000 + queue + 1'000'000 + 2'000'000 + queue + 3 * 65'000);
+  // The set point is handed over first: it waits for the long one alone.
+  CHECK(proof.latency(0, 0).command == (135 + 65) * 1000);
   // Back again: no set point, and two requests.
   CHECK(proof.settling(1, 0) ==
         3'000'000 + (135 + 2 * 95) * 1000 + 1'000'000 + 2'000'000 + (135 + 2 * 95 + 3 * 65) * 1000);
@@ -276,6 +315,7 @@ TEST_CASE("proof: what others send must be in time, too, in each configuration a
   std::vector<std::pair<std::uint16_t, std::uint16_t>> where;
   for (const Doubt& doubt : all) {
     CHECK((doubt.kind == Doubt::Kind::late && doubt.topic == none && doubt.why.response == 200'000));
+    CHECK(doubt.sampling == 0);
     where.emplace_back(doubt.from, doubt.configuration);
   }
   CHECK(where == std::vector<std::pair<std::uint16_t, std::uint16_t>>{{none, 0}, {none, 0}, {0, 1}, {1, 0}});

@@ -205,6 +205,17 @@ TEST_CASE("proof messages: of configurations, of the start and of changes") {
               "441 65 us, every 30, due -, jitter 30", "441 65 us, every 30, due -, jitter 30"});
 }
 
+TEST_CASE("proof messages: what may be sent each nanosecond counts") {
+  Robot robot;
+  robot.repeated[0].repeat = 1ns;
+  robot.op.retry = 1ns;
+  Proof<64> proof{robot.op, bit_rate};
+  static_cast<void>(proof.load(0));
+  const auto all = lines(proof.messages());
+  CHECK(std::count(all.begin(), all.end(), "031 65 us, every 1e-06, due -, jitter 1") == 1);
+  CHECK(std::count(all.begin(), all.end(), "111 95 us, every 1e-06, due -, jitter 1") == 1);
+}
+
 TEST_CASE(
     "proof messages: if it does not say how often, a stream that follows a value is asked for once a "
     "second") {

@@ -435,6 +435,21 @@ TEST_CASE(
   CHECK(raw[0] == 25);
 }
 
+TEST_CASE("supervisor steps: a nanosecond is time: between two set points, and before it asks again") {
+  Robot robot;
+  const std::vector<SetPoint> entry{{motor, {}, Priority::low, 1ns}};
+  robot.configurations[0].entry = entry;
+  robot.start();
+  CHECK(robot.supervisor->next() == robot.now + 1ns);
+
+  Robot asking;
+  asking.all = {{real, 100ms}};
+  asking.configurations[0].streams = asking.all;
+  asking.op.retry = 1ns;
+  asking.start();
+  CHECK(asking.next_ms() == 300);
+}
+
 TEST_CASE("supervisor steps: a period follows a value, not more often than it may, and from a new value on") {
   Robot robot;
   const std::vector<Adaptation> adaptations{{.stream = 1,

@@ -128,6 +128,14 @@ TEST_CASE("on an idle bus a disturbance is a start of frame that no node continu
   CHECK(bus.faults(node).receive_errors() == 1);
 }
 
+TEST_CASE("a bus without nodes can be disturbed, too") {
+  Arbiter bus;
+  bus.disturb({50});
+  CHECK(run(bus, at(51)).empty());
+  CHECK(bus.totals().errors == 1);
+  CHECK(bus.totals().error_bits == 1 + 6 + 6 + 8 + 3);
+}
+
 TEST_CASE("at the boundary at which a frame starts it is the frame that is disturbed") {
   Arbiter bus;
   const NodeId node = bus.attach();

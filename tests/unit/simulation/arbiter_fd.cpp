@@ -173,6 +173,22 @@ TEST_CASE("a disturbed CAN FD frame comes again whole, or is withdrawn with its 
   CHECK(heard[2].text == "005##1EE");
 }
 
+TEST_CASE("a CAN FD frame on the bus stays what it is when its node leaves with those that wait") {
+  Arbiter bus{500'000, {}, 4};
+  const NodeId a = bus.attach({QueueOrder::fifo, 1});
+  const NodeId b = bus.attach();
+  CHECK(*bus.send_any(a, any("123##1AA"), at(0ns)));
+  CHECK(run(bus, at(10us)).empty());  // it is on the bus
+  CHECK(*bus.send_any(a, any("124##1BB"), bus.now()));
+  CHECK(bus.detach(a, Leftovers::withdraw) == 1);
+  for (const char* text : {"125##1CC", "126##1DD"}) CHECK(*bus.send_any(b, any(text), bus.now()));
+  const auto heard = run(bus);
+  REQUIRE(heard.size() == 3);
+  CHECK(heard[0].text == "123##1AA");
+  CHECK(heard[1].text == "125##1CC");
+  CHECK(heard[2].text == "126##1DD");
+}
+
 TEST_CASE("in its last bit: receivers have it, and get it again") {
   Arbiter bus{500'000, {}, 4};
   const NodeId a = bus.attach();

@@ -125,6 +125,18 @@ TEST_CASE("of two that are released at one moment the more urgent one starts fir
   CHECK(setup.jobs[0][0].started == at(3ms));
 }
 
+TEST_CASE("the timer and an event of one moment have their effect before any job begins") {
+  Setup setup;
+  setup.programs = {{0, {compute(5ms)}}, {1, {compute(2ms)}}};
+  setup.cpu.at(at(0ms), [&] { setup.dispatcher.start(0, 10ms, Level::low, setup.cpu.now()); });
+  setup.once(1, Level::urgent, 10ms);
+  setup.cpu.run_until(at(19ms));
+  REQUIRE(setup.jobs[0].size() == 2);
+  REQUIRE(setup.jobs[1].size() == 1);
+  CHECK(setup.jobs[1][0].started == at(10ms));
+  CHECK(setup.jobs[0][1].started == at(12ms));
+}
+
 TEST_CASE("of two of one level that are released at one moment both run") {
   Setup setup;
   setup.programs = {{0, {compute(5ms)}}, {1, {compute(1ms)}}};

@@ -212,6 +212,10 @@ TEST_CASE("a call takes the radio to its time, and a time of the past is the pre
     air.radio.connect(0, at(250ms));
     CHECK(air.run(350ms) == "300 linked 0;300 connected 0;");
   }
+  SECTION("start_scan just as it advertises: that one is over, too") {
+    air.radio.start_scan(at(100ms));
+    CHECK(air.run(250ms) == "200 found 0;");
+  }
   SECTION("connect, refused") {
     air.radio.connect(0, at(0ms));
     air.radio.connect(0, at(10ms));  // under way already: no report

@@ -738,6 +738,17 @@ TEST_CASE("an ended server has no clients") {
   CHECK(client.dismissal().reason == vb::Reason::ended);
 }
 
+TEST_CASE("a server at whose end nothing waits for its clients ends at once") {
+  VirtualBusSetup setup{{.last_flush = 10s}};
+  RawClient client{setup.path()};
+  client.greet();
+  setup.poll();
+  const auto begin = std::chrono::steady_clock::now();
+  setup.server->end();
+  CHECK(std::chrono::steady_clock::now() - begin < 5s);
+  CHECK(client.dismissal().reason == vb::Reason::ended);
+}
+
 TEST_CASE("a client that never reads can go on sending while it has credit, and gets it back later") {
   VirtualBusSetup setup{{.transmit_queue = 2, .output_queue = 4}};
   const auto deaf = setup.join();
