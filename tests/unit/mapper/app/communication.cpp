@@ -71,6 +71,8 @@ TEST_CASE("mapper: a ping is answered, with a link, in any state", "[mapper]") {
   bench.say("{S,CON}\n{S,PAU}\n{ }\n");
   bench.run_for(25ms);
   CHECK(bench.heard("\t!\n") == 1);
+  CHECK(bench.robot.counters().pongs == 2);
+  CHECK(bench.robot.counters().idles == 1);
 }
 
 TEST_CASE("mapper: asked who it is it says its handshake again, and goes on as before", "[mapper]") {
@@ -217,6 +219,22 @@ TEST_CASE("mapper: without room in the UART bytes are lost and counted, and it g
   bench.parts.room = 1000;
   bench.run_for(1s);
   CHECK(bench.robot.counters().updates == before + 5);
+}
+
+TEST_CASE("mapper: supervision that comes late by a whole period looks once, and goes on at its times",
+          "[mapper]") {
+  Bench bench;
+  bench.run_for(3s);
+  bench.link(true);
+  bench.now += 200ms;  // at once: it was due in the middle
+  bench.port.advance(bench.now);
+  bench.work();
+  CHECK(bench.heard() == handshake);
+  CHECK(bench.parts.lights == both);
+  bench.run_for(99ms);
+  CHECK(bench.parts.lights == both);
+  bench.run_for(1ms);
+  CHECK(bench.parts.lights == green);
 }
 
 }  // namespace mapper_app_communication_test

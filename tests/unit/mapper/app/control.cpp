@@ -260,6 +260,21 @@ TEST_CASE("mapper: how a calibration ends badly is said, with the reason", "[map
   }
 }
 
+TEST_CASE("mapper: a calibration that does not end is given up with the first step behind its limit",
+          "[mapper]") {
+  RobotModel model = mapper::app::avr_robot;
+  model.times.calibration_limit = 600ms;  // 20 steps
+  Bench bench{model};
+  bench.confirm();
+  bench.parts.compass_missing = true;
+  bench.say("{C,5}\n");
+  REQUIRE(bench.run_until([&] { return bench.is(State::calibrating); }, 1s));
+  const base::Duration past = bench.now.time_since_epoch() % 30ms;
+  const base::Time first = bench.now + (past == 0ms ? base::Duration{} : base::Duration{30ms} - past);
+  REQUIRE(bench.run_until([&] { return bench.is(State::confirmed); }, 2s));
+  CHECK(bench.now - first == 630ms);
+}
+
 TEST_CASE("mapper: a calibration can be stopped, and that is reported", "[mapper]") {
   Bench bench;
   bench.confirm();
@@ -315,6 +330,7 @@ TEST_CASE("mapper: time is measured: a robot whose tasks come late ends at the s
   }
   CHECK_FALSE(bench.robot.busy());
   CHECK(bench.robot.counters().overload.missed > 10);
+  CHECK(bench.robot.counters().overload.late > 0);
   CHECK(near(bench.parts.pose, {0, 0.6F, motion::pi / 2}, 0.04F, motion::radians(5.0F)));
   CHECK(near(bench.robot.pose(), bench.parts.pose, 0.02F, motion::radians(2.0F)));
 }

@@ -215,4 +215,17 @@ TEST_CASE("mapper locator: a poor calibration is taken only by a robot that has 
   }
 }
 
+TEST_CASE("mapper locator: before an operator confirms, heading 0 is where the field points ahead",
+          "[mapper_locator]") {
+  RobotModel model = calibrated(mapper::app::avr_robot, {});
+  model.estimator.compass_rule = motion::CompassRule::always;
+  model.estimator.compass_variance_rad2 = 1e-9F;
+  model.estimator.compass_gate = 0.0F;
+  for (const float turned : {0.0F, 0.5F}) {
+    Locator locator{model};
+    for (int i = 0; i < 5; ++i) locator.step({{}, 0.0F, field_at(turned, 0.0F)}, at_rest, dt);
+    CHECK(near_angle(locator.estimate().pose.heading_rad, turned, 1e-3F));
+  }
+}
+
 }  // namespace mapper_app_locator_test

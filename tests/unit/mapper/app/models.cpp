@@ -22,7 +22,10 @@ static_assert(avr_robot.periods.estimator == 30ms && avr_robot.periods.movement 
 // [decided]
 static_assert(arduino_robot.motors.wheel_pi.pi.kp == 6e-4F && arduino_robot.motors.wheel_pi.pi.ki == 8e-3F &&
               arduino_robot.motors.wheel_pi.starting_effort == 0.3F);
-static_assert(avr_robot.times.handshake == 1s);
+static_assert(avr_robot.periods.supervision == 100ms && avr_robot.periods.communication_apart == 20ms);
+static_assert(avr_robot.times.handshake == 1s && avr_robot.times.idle == 1s);
+static_assert(avr_robot.times.command_lives == 200ms && avr_robot.times.calibration_limit == 60s);
+static_assert(avr_robot.measuring.samples == 64 && avr_robot.measuring.failures == 10);
 static_assert(avr_robot.times.return_after == 0s, "a robot that comes home by itself has to be asked for");
 static_assert(avr_robot.motors.kind == mapper::app::MotorKind::gated);      // [T2 §7.1, §10.2.3]
 static_assert(arduino_robot.motors.kind == mapper::app::MotorKind::paced);  // [T2 §7.1.1]

@@ -266,9 +266,35 @@ TEST_CASE("mapper: parts that fail later are counted, and it drives on", "[mappe
   CHECK(counters.gyro > 100);
   CHECK(counters.compass > 100);
   CHECK(counters.infrared > 20);
+  CHECK(counters.estimator.gyro > 10);
   CHECK(bench.is(State::confirmed));
   for (const mapper::link::Update& update : updates(bench.heard()))
     CHECK(update.s1 + update.s2 + update.s3 + update.s4 == 0);
+}
+
+TEST_CASE("mapper: nothing of a robot at rest is left out; ticks that no wheel makes are, and counted",
+          "[mapper]") {
+  Bench bench;
+  bench.confirm();
+  CHECK(bench.robot.counters().estimator == motion::EstimatorCounters{});
+  CHECK(bench.robot.counters().ticks_rejected == 0);
+  bench.parts.left_ticks += 500;
+  bench.run_for(100ms);
+  CHECK(bench.robot.counters().ticks_rejected == 1);
+  CHECK(bench.robot.pose() == motion::Pose{});
+}
+
+TEST_CASE("mapper: commands that movement does not come to take are counted", "[mapper]") {
+  Bench bench;
+  bench.confirm();
+  const std::uint32_t before = bench.robot.counters().commands_lost;
+  for (int ms = 0; ms < 100; ++ms) {
+    bench.port.advance(bench.now += 1ms);
+    if (bench.port.armed() <= bench.now) bench.robot.expire();
+    for (scheduling::Level level; bench.port.take_pended(level);)
+      if (level != scheduling::Level::high) bench.robot.run(level);
+  }
+  CHECK(bench.robot.counters().commands_lost - before >= 2);  // of three steps of the pose controller
 }
 
 TEST_CASE("mapper: motors without commands are switched off", "[mapper]") {
@@ -288,10 +314,13 @@ TEST_CASE("mapper: motors without commands are switched off", "[mapper]") {
         if (level != scheduling::Level::medium) bench.robot.run(level);
     }
   };
-  without_medium(150ms);
+  // Movement took the last command 10 ms ago; 200 ms later that still counts, and with its next job no more.
+  bench.run_until([&] { return bench.now.time_since_epoch() % 60ms == 50ms; });
+  without_medium(209ms);
   CHECK(bench.parts.efforts != motion::Efforts{});
-  without_medium(120ms);
+  without_medium(1ms);
   CHECK(bench.parts.efforts == motion::Efforts{});
+  without_medium(60ms);
   CHECK(bench.robot.counters().motors_starved == 1);
   CHECK(bench.robot.counters().control_skipped >= 6);
 }

@@ -251,6 +251,18 @@ TEST_CASE("mapper: comes home the way it came, where that is enabled", "[mapper]
   never_drives(bench, 20s);  // once
 }
 
+TEST_CASE("mapper: the way home begins when the link has been gone for so long, to the millisecond",
+          "[mapper][link]") {
+  Bench bench{returning()};
+  bench.confirm();
+  bench.run_for(50ms);  // to a moment at which supervision looks
+  bench.link(false);
+  bench.run_for(3s - 1ms);
+  CHECK(bench.robot.counters().returns == 0);
+  bench.run_for(1ms);
+  CHECK(bench.robot.counters().returns == 1);
+}
+
 TEST_CASE("mapper: stays where it is, where that is not enabled", "[mapper][link]") {
   Bench bench{mapper::app::arduino_robot};
   bench.confirm();

@@ -141,6 +141,14 @@ TEST_CASE("mapper state: lamps", "[mapper_state]") {
     CHECK(lights(S::calibrating, {.in_state = 300ms}) == green);
     CHECK(lights(S::returning, {.in_state = 300ms}) == green);
     CHECK(lights(S::returning, {.in_state = 800ms}) == yellow);
+    CHECK(lights(S::calibrating, {.in_state = 199ms}) == both);
+    CHECK(lights(S::calibrating, {.in_state = 200ms}) == green);
+    CHECK(lights(S::calibrating, {.in_state = 399ms}) == green);
+    CHECK(lights(S::calibrating, {.in_state = 400ms}) == both);
+    CHECK(lights(S::returning, {.in_state = 499ms}) == green);
+    CHECK(lights(S::returning, {.in_state = 500ms}) == yellow);
+    CHECK(lights(S::returning, {.in_state = 999ms}) == yellow);
+    CHECK(lights(S::returning, {.in_state = 1s}) == green);
   }
 }
 

@@ -155,6 +155,18 @@ TEST_CASE("central: what is not possible now is refused, and changes nothing") {
   CHECK(bench.type("conn 0\r") == "<no scan><connect a>connecting 0\n");  // from a terminal
 }
 
+TEST_CASE("central: what is no command is refused in words, to the ends of what there is room for") {
+  Bench<> bench;
+  const std::string commands = "error: start, list, stop, conn i, switch i, drop i, *, reset\n";
+  CHECK(bench.type("1234567890123456\n") == commands);
+  CHECK(bench.type("12345678901234567\n") == "error: longer than any command\n");
+  CHECK(bench.type("start now\n") == commands);
+  for (const char* of_none : {"conn\n", "switch x\n", "drop -1\n"})
+    CHECK(bench.type(of_none) == "error: an index is missing, as in conn 0\n");
+  for (const char* of_another : {"conn 7\n", "conn 8\n"})  // the last that there is room for, and the next
+    CHECK(bench.type(of_another) == "error: not in the list; see list\n");
+}
+
 TEST_CASE("central: one attempt at a time, no more links than there are, and none while it closes") {
   Bench<8, 2> bench;
   (void)bench.type("start\n");

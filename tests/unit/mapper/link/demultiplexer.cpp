@@ -114,6 +114,17 @@ TEST_CASE("one robot's torn sentence is not completed by another's, nor by one w
   CHECK(feed(ears, "[7]:C:{S,IDL}\n").empty());
   CHECK(ears.of_no_robot() == 7 + 8);
   CHECK(feed(ears, "[1]:B:{S,IDL}\n").size() == 1);
+  CHECK(feed(ears, "[2]:C:{S,IDL}\n").empty());  // the first that there is no room for
+  CHECK(ears.of_no_robot() == 7 + 8 + 8);
+}
+
+TEST_CASE("what comes before the first prefix belongs to no robot") {
+  Demultiplexer<2> ears;
+  CHECK(feed(ears, "{S,IDL}\n").empty());
+  CHECK(ears.of_no_robot() == 8);
+  CHECK(ears.ear(0).text().heard() == 0);
+  CHECK(feed(ears, "[0]:A:{S,IDL}\n").size() == 1);
+  CHECK(ears.of_no_robot() == 8);
 }
 
 TEST_CASE("text and packed bytes tear each other, and neither is taken for the other") {

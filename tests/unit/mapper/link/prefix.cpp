@@ -21,6 +21,10 @@ static_assert(safe_name("a:b{c}[d]\n\x80") == "a_b_c__d___");
 static_assert(safe_name(" ~\x7F\x1F") == " ~__");  // the first and the last of ASCII that are printed
 static_assert(safe_name("") == "?");
 
+// Where nothing else is said a stream has a central: without a prefix it is of no robot.
+static_assert(PrefixFilter{}.feed('x') == Step::no_robot);
+static_assert(PrefixFilter{true}.feed('x') == Step::text);
+
 struct Stripped {
   std::string text;      ///< of sources that are known
   std::string no_robot;  ///< of no robot
@@ -62,6 +66,13 @@ TEST_CASE("a broken prefix is counted, and what follows belongs to no robot unti
   }
   CHECK(strip("[1]:A[2]:B:x").broken == 1);
   CHECK(strip("[1]:A[2]:B:x").text == "x");
+}
+
+TEST_CASE("the longest prefixes: two blanks, the last index, a name of 20 characters") {
+  const Stripped s = strip("[0]  :A:x[255]:12345678901234567890:y");
+  CHECK(s.text == "xy");
+  CHECK(s.sources == "0 255 ");
+  CHECK(s.broken == 0);
 }
 
 TEST_CASE("without a central there is one source; with one, none until the first prefix") {

@@ -39,6 +39,19 @@ static_assert(number("1-1,1234") == not_taken);
 static_assert(number("1.5,1234") == not_taken);
 static_assert(number("1/5,1234") == not_taken);
 static_assert(number("+5,12345") == not_taken);
+// The least of each length, and the greatest of one less with a zero in front.
+static_assert(number("10,12345") == 10 && number("09,12345") == not_taken);
+static_assert(number("100,1234") == 100 && number("099,1234") == not_taken);
+static_assert(number("1000,123") == 1000 && number("0999,123") == not_taken);
+static_assert(number("-1,12345") == -1);
+static_assert(number("-10,1234") == -10 && number("-09,1234") == not_taken);
+static_assert(number("-100,123") == -100 && number("-099,123") == not_taken);
+static_assert(number("-1000,12") == -1000 && number("-0999,12") == not_taken);
+// Longer ones are the reader's, whatever their last four digits are.
+static_assert(number("99999,12") == not_taken && number("-99999,1") == not_taken);
+static_assert(number("999999,1") == not_taken && number("-999999,") == not_taken);
+static_assert(number("9999999,") == not_taken && number("-9999999") == not_taken);
+static_assert(number("99999999") == not_taken);
 
 // --- blocks ------------------------------------------------------------------------------------------------
 

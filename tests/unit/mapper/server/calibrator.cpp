@@ -150,4 +150,42 @@ TEST_CASE("calibrator: void after a handshake, a lost link or a stop") {
   CHECK(bench.said == std::vector{0, 1});
 }
 
+/// At which milliseconds behind `from` something is said.
+std::vector<int> times_of(Calibrator& calibrator, Time from, int until_ms) {
+  std::vector<int> times;
+  for (int ms = 0; ms < until_ms; ++ms)
+    if (calibrator.next(from + ms * 1ms)) times.push_back(ms);
+  return times;
+}
+
+TEST_CASE("calibrator: when each word is said, to the millisecond") {
+  Calibrator calibrator;
+  calibrator.begin(Time{1s});
+  CHECK(times_of(calibrator, Time{1s}, 1500) == std::vector{0, 700, 1400});
+  calibrator.hear(knows(0), Time{3s});
+  CHECK(times_of(calibrator, Time{3s}, 1500) == std::vector{0, 700, 1400});
+  calibrator.hear(knows(1, Calibration::turning), Time{5s});
+  CHECK(times_of(calibrator, Time{5s}, 2300) == std::vector{1500, 2200});
+  calibrator.hear(good(1, Calibration::until_off), Time{8s});
+  CHECK(times_of(calibrator, Time{8s}, 1100) == std::vector{350, 1050});
+  CHECK(calibrator.times_said() == 3 + 3 + 2 + 2);
+}
+
+TEST_CASE("calibrator: a result may be stored for four seconds, and one that is silent has four more") {
+  Calibrator answers;
+  answers.begin(Time{1s});
+  answers.hear(knows(0), Time{1s});
+  answers.hear(good(1, Calibration::until_off), Time{2s});
+  answers.hear(good(1, Calibration::until_off), Time{6s} - 1ns);
+  CHECK(answers.phase() == Phase::storing);
+  Calibrator silent = answers;
+  answers.hear(good(1, Calibration::until_off), Time{6s});
+  CHECK(answers.phase() == Phase::done);
+  (void)silent.next(Time{10s} - 1ns);
+  CHECK(silent.phase() == Phase::storing);
+  (void)silent.next(Time{10s});
+  CHECK(silent.phase() == Phase::done);
+  CHECK(silent.result() == good(1, Calibration::until_off));
+}
+
 }  // namespace mapper_server_calibrator_test

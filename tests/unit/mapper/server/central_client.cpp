@@ -335,4 +335,176 @@ TEST_CASE(
   }
 }
 
+/// A client to which each word of its central, and the time, comes by hand. It knows two robots.
+struct Hand {
+  explicit Hand(const CentralClientOptions& options = {}) : client{options} {
+    client.scan(0ms);
+    wait(0ms);
+    hear("found 0\n");
+    hear("found 2\n0:C0000000000A:AVR\n1:C0000000000B:B\nend of list\n");
+    (void)client.take();
+    (void)event();
+  }
+  void hear(std::string_view words) { client.feed(words, now); }
+  void wait(Duration time) {
+    now += time;
+    client.expire(now);
+  }
+  /// The next event in words, or nothing.
+  std::string event() {
+    const auto next = client.next_event();
+    if (!next) return "";
+    constexpr const char* kinds[] = {"listed", "connected", "lost", "said", "failed"};
+    return std::string{kinds[static_cast<int>(next->kind)]} + " " + std::to_string(next->index) +
+           (next->saying ? ", not said" : "") + (next->words.empty() ? "" : ": " + next->words);
+  }
+
+  CentralClient client;
+  Time now{1s};
+};
+
+TEST_CASE("central client: answers that are lost before a scan do not shorten it, one behind it does") {
+  CentralClient client{{.most_attempts = 9}};
+  CHECK(client.scan(5s));
+  client.expire(Time{1s});
+  CHECK(client.take() == "*\nstop\n");
+  client.expire(Time{2s} - 1ns);
+  CHECK(client.take().empty());
+  client.expire(Time{2s});
+  CHECK(client.take() == "*\nstop\n");
+  client.feed("found 0\n", Time{2s});
+  CHECK(client.take() == "start\n");
+  client.expire(Time{3s});
+  CHECK(client.take() == "*\nstop\n");
+  client.feed("found 0\n", Time{3s});
+  CHECK(client.take() == "start\n");
+  client.feed("scanning\n", Time{3s});
+  client.expire(Time{8s} - 1ns);
+  CHECK(client.take().empty());
+  client.expire(Time{8s});
+  CHECK(client.take() == "stop\nlist\n");
+  client.feed("found 1\n", Time{8s});
+  client.expire(Time{9s});  // and the list was lost
+  CHECK(client.take() == "*\nstop\n");
+  client.feed("found 1\n", Time{9s});
+  CHECK(client.take() == "stop\nlist\n");
+  CHECK(client.counters().timeouts == 3);
+  CHECK(client.counters().settled == 4);
+}
+
+TEST_CASE("central client: a central that scans already scans for as long as was asked for") {
+  Hand hand;
+  hand.client.scan(2s);
+  hand.wait(0ms);
+  CHECK(hand.client.take() == "start\n");
+  hand.hear("error: scans already\n");
+  hand.wait(2s - 1ns);
+  CHECK(hand.client.take().empty());
+  hand.wait(1ns);
+  CHECK(hand.client.take() == "stop\nlist\n");
+  CHECK(hand.client.counters().refused == 0);
+  CHECK(hand.event().empty());
+}
+
+TEST_CASE("central client: a busy central is asked again until the time for a link is over") {
+  Hand hand{{.connect = 600ms}};
+  hand.client.connect(0);
+  hand.wait(0ms);
+  for (int times = 0; times < 2; ++times) {
+    CHECK(hand.client.take() == "conn 0\n");
+    hand.hear("error: still connecting to 1\n");
+    hand.wait(300ms - 1ns);
+    CHECK(hand.client.take().empty());
+    hand.wait(1ns);
+  }
+  CHECK(hand.client.take() == "conn 0\n");
+  CHECK(hand.event().empty());
+  hand.hear("error: still connecting to 1\n");
+  CHECK(hand.event() == "failed 0: the central is still busy with another link");
+  CHECK(hand.client.idle());
+}
+
+TEST_CASE("central client: a link that does not come in its time is ended, one that does not end is named") {
+  Hand hand;
+  hand.client.connect(0);
+  hand.wait(0ms);
+  CHECK(hand.client.take() == "conn 0\n");
+  hand.hear("connecting 0\n");
+  hand.wait(10s - 1ns);
+  CHECK(hand.event().empty());
+  hand.wait(1ns);
+  CHECK(hand.event() == "failed 0: no link to AVR came");
+  CHECK(hand.client.take() == "*");
+  hand.hear("command\n");
+  CHECK(hand.client.take() == "drop 0\n");
+  hand.hear("closing 0\n");
+  hand.wait(10s - 1ns);
+  CHECK(hand.event().empty());
+  hand.wait(1ns);
+  CHECK(hand.event() == "failed 0: the link to AVR does not end");
+  CHECK(hand.client.counters().timeouts == 2);
+  CHECK(hand.client.idle());
+}
+
+TEST_CASE("central client: of refusals only those of the robot that is asked for end its request") {
+  Hand hand;
+  hand.client.connect(0);
+  hand.wait(0ms);
+  hand.hear("connecting 0\nerror: no link to 1\nerror: scans already\n");
+  CHECK(hand.event().empty());
+  CHECK(hand.client.counters().strays == 2);
+  hand.hear("error: no link to 0\n");
+  CHECK(hand.event() == "failed 0: the central refuses AVR: no link to 0");
+  CHECK(hand.client.counters().refused == 1);
+  CHECK(hand.client.counters().strays == 2);
+  hand.hear("error: no link to 0\n");  // nothing is asked for
+  CHECK(hand.client.counters().strays == 3);
+}
+
+TEST_CASE("central client: words that cannot be said are named as such, and the link as gone") {
+  Hand hand;
+  hand.client.connect(0);
+  hand.wait(0ms);
+  hand.hear("connecting 0\nconnected 0\n");
+  CHECK(hand.event() == "connected 0");
+  CHECK(hand.client.peers()[0].linked);
+  (void)hand.client.take();
+  hand.client.say(0, "{}\n");
+  hand.client.say(1, "{}\n");
+  hand.wait(0ms);
+  CHECK(hand.client.take() == "{}\n*");
+  CHECK(hand.event() == "said 0");
+  hand.hear("command\n");
+  CHECK(hand.client.take() == "switch 1\n");
+  hand.hear("error: no link to 1; conn first\n");
+  CHECK(hand.event() == "failed 1, not said: the central refuses B: no link to 1; conn first");
+  CHECK(hand.client.peers()[0].linked);
+  hand.client.say(0, "{}\n");
+  hand.wait(0ms);
+  CHECK(hand.client.take() == "switch 0\n");
+  hand.hear("error: no link to 0; conn first\n");
+  CHECK(hand.event() == "failed 0, not said: the central refuses AVR: no link to 0; conn first");
+  CHECK_FALSE(hand.client.peers()[0].linked);
+}
+
+TEST_CASE("central client: a new list keeps the link of the same robot at the same index, and no other") {
+  Hand hand;
+  hand.client.connect(0);
+  hand.wait(0ms);
+  hand.hear("connecting 0\nconnected 0\n");
+  hand.client.scan(0ms);
+  hand.wait(0ms);
+  hand.hear("command\n");
+  hand.hear("found 2\n0:C0000000000A:AVR\n1:C0000000000B:B\nend of list\n");
+  REQUIRE(hand.client.peers().size() == 2);
+  CHECK(hand.client.peers()[0].linked);
+  CHECK_FALSE(hand.client.peers()[1].linked);
+  hand.client.scan(0ms);
+  hand.wait(0ms);
+  hand.hear("found 2\n0:C0000000000C:C\n2:C0000000000A:AVR\nend of list\n");
+  REQUIRE(hand.client.peers().size() == 2);
+  CHECK(hand.client.peers()[1].index == 2);
+  for (const Peer& peer : hand.client.peers()) CHECK_FALSE(peer.linked);
+}
+
 }  // namespace mapper_server_central_client_test

@@ -115,6 +115,7 @@ TEST_CASE("central stream: a line that a packet cuts short is dropped, and count
         c, [](char) {}, [&](const CentralLine&) { ++lines; });
   CHECK(lines == 0);
   CHECK(stream.cut() == 1);
+  CHECK(parted("connec[0]:A:{S,IDL}\nted 0\n") == "[0]:A:{S,IDL}\nted 0\n|");
 }
 
 TEST_CASE("central stream: any bytes, any number: nothing is held for ever") {

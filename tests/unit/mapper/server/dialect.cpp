@@ -22,7 +22,13 @@ TEST_CASE("dialect: a line of a list, behind a robot's words too, with or withou
   CHECK(robot.index == 12);
   CHECK(robot.address == "c0000000000b");
   CHECK(robot.name == "B");
-  for (const char* none : {"", ":", "0:C0:AVR", "0:C0000000000A:", "x:C0000000000A:AVR", "0:G0000000000A:A"})
+  REQUIRE(detail::parse_listed("255:C0000000000A:A", robot));
+  CHECK(robot.index == 255);
+  REQUIRE(
+      detail::parse_listed("1255:C0000000000A:A", robot));  // three digits at most; the rest was before it
+  CHECK(robot.index == 255);
+  for (const char* none : {"", ":", "0:C0:AVR", "0:C0000000000A:", "x:C0000000000A:AVR", "0:G0000000000A:A",
+                           "256:C0000000000A:A", ":C0000000000A:A", "0:C000000000A:A"})
     CHECK_FALSE(detail::parse_listed(none, robot));
 }
 
@@ -240,6 +246,7 @@ TEST_CASE("dialect: a command that the base firmware does not answer holds up no
   Translator silent{Dialect::at};
   silent.from_client("stop\n", begin);
   CHECK(silent.take_for_dongle() == "AT+FOUND=0.");
+  CHECK_FALSE(silent.idle());
   silent.expire(begin + 800ms);
   CHECK(silent.take_for_client().empty());
   CHECK(silent.idle());
@@ -283,6 +290,73 @@ TEST_CASE("dialect: behind a scan the thesis's dongle has two seconds to its fir
   (void)translator.take_for_client();
   translator.expire(begin + 12s);
   CHECK(translator.take_for_client() == "found 0\n");
+}
+
+TEST_CASE("dialect: an answer of the base firmware that names no robot ends its list") {
+  talk(Dialect::at, {
+                        {0, 'c', "stop\n", "AT+FOUND=0.", ""},
+                        {1, 'd', "OK.", "", "found 0\n"},
+                        {2, 'c', "reset\nstop\n", "AT+RESET.", ""},
+                        {3, 'd', "OK.", "AT+FOUND=0.", "reset\n"},
+                        {4, 'd', "OK-C0000000000A.", "", "found 0\n"},  // without a name behind it
+                        {5, 'c', "reset\nstop\n", "AT+RESET.", ""},
+                        {6, 'd', "OK.", "AT+FOUND=0.", "reset\n"},
+                        {7, 'd', "OK-C000000000-A.", "", "found 0\n"},  // no address
+                        {8, 'c', "list\n", "", "end of list\n"},
+                    });
+}
+
+TEST_CASE("dialect: of a list without an end 32 robots are asked for, whatever the scan has counted") {
+  Translator translator{Dialect::at};
+  const auto lists_32 = [&translator] {
+    for (int i = 0; i < 32; ++i) {
+      CHECK(translator.take_for_dongle() == "AT+FOUND=" + std::to_string(i) + ".");
+      translator.from_dongle("OK-C0000000000A-R.", begin);
+    }
+    CHECK(translator.take_for_dongle().empty());
+    CHECK(translator.take_for_client() == "found 32\n");
+  };
+  translator.from_client("stop\n", begin);
+  lists_32();
+  for (const char* count : {"OK-32.", "OK-33.", "OK-x."}) {
+    translator.from_client("start\n", begin);
+    translator.from_dongle("OK.", begin);
+    translator.from_client("stop\n", begin);
+    CHECK(translator.take_for_dongle() == "AT+SCAN+.AT+SCAN-.");
+    CHECK(translator.take_for_client() == "scanning\n");
+    translator.from_dongle(count, begin);
+    lists_32();
+  }
+}
+
+TEST_CASE("dialect: a link of the base firmware that is to end has as long as one that is to come") {
+  talk(Dialect::at, {
+                        {0, 'c', "drop 1\n", "AT+DROP=1.", ""},
+                        {1, 'd', "WAIT.", "", ""},
+                        {9'000, 't', "", "", ""},
+                        {9'000, 'd', "OK.", "", "closing 1\nclosed 1\n"},
+                        {9'001, 'c', "drop 1\n", "AT+DROP=1.", ""},
+                        {9'002, 'd', "WAIT.", "", ""},
+                        {18'002, 't', "", "", ""},  // given up
+                        {18'003, 'd', "OK.", "", ""},
+                        {18'004, 'c', "drop 1\n", "*.AT?.", ""},
+                    });
+}
+
+TEST_CASE("dialect: what is too long for an answer, or for a line of a list, is a robot's") {
+  Translator at{Dialect::at};
+  at.from_dongle("O" + std::string(63, 'x'), begin);
+  CHECK(at.take_for_client().empty());
+  at.from_dongle("x", begin);
+  CHECK(at.take_for_client() == "[0]:?:O" + std::string(64, 'x'));
+  const std::string listed = "0:C0000000000A:AVR\n";
+  for (const bool fits : {true, false}) {
+    Translator thesis{Dialect::thesis};
+    thesis.from_dongle(std::string(fits ? 78 : 100, 'X') + listed, begin);  // 96 characters and a line feed
+    (void)thesis.take_for_client();
+    thesis.from_client("list\n", begin);
+    CHECK(thesis.take_for_client() == (fits ? listed : "") + "end of list\n");
+  }
 }
 
 }  // namespace mapper_server_dialect_test

@@ -124,6 +124,9 @@ TEST_CASE("sender: heard, and stopped by something on the way") {
   CHECK(bench.sender.blocked());
   CHECK(bench.sender.off_cm() == Approx(30).margin(0.1));
   CHECK(bench.said.size() == 1);
+  bench.go(0, 10);  // and what is asked for next is not blamed for it
+  CHECK(bench.said.size() == 2);
+  CHECK_FALSE(bench.sender.blocked());
 }
 
 TEST_CASE("sender: two copies that add up are driven back, and nothing is blamed for it") {
@@ -270,6 +273,8 @@ TEST_CASE("sender: what the place where a robot stands proves of its leg, at the
       {{0, 50}, place(2, 0, 0), ended, true},
       {{0, 50}, place(50, 0, 9), ended, true},
       {{0, 50}, place(50, 0, 15), ended, true},
+      {{0, 12}, place(6, 8, 0), ended, true},  // 10 cm and 10 cm: 8 more than the way
+      {{0, 12}, place(6, 9, 0), said, false, {0, 6}},
       // Not heard: less than 2 cm away.
       {{0, 50}, place(1, 0, 0), said, false, {0, 49}},
       {{0, 50}, place(-1, 0, 0), said, false, {0, 51}},
@@ -344,6 +349,11 @@ TEST_CASE("sender: after three corrections that lead elsewhere it is given up, a
   CHECK(bench.sender.progress() == Progress::ended);
   CHECK_FALSE(bench.sender.blocked());
   CHECK(bench.sender.off_deg() == Approx(40));
+  bench.go(90, 0);  // the next has three of its own
+  bench.pass(9s);
+  bench.stands(0, 0, 180);
+  CHECK(bench.sender.progress() == Progress::said);
+  CHECK(bench.said.back() == SetPoint{40, 0});
 }
 
 TEST_CASE("sender: when a stop is said again, and when a robot that was not heard of is stopped") {
@@ -367,6 +377,12 @@ TEST_CASE("sender: when a stop is said again, and when a robot that was not hear
   REQUIRE(unseen.hear_idle(second + 1s));
   CHECK(unseen.next(second + 4s - 1ns).kind == Kind::none);
   CHECK(unseen.next(second + 4s).kind == Kind::unpause);
+  // It counts from the question, if the robot has stood for longer.
+  Sender stood;
+  REQUIRE(stood.hear_idle(second));
+  stood.go({0, 20}, second + 10s);
+  CHECK(stood.next(second + 13s - 1ns).kind == Kind::none);
+  CHECK(stood.next(second + 13s).kind == Kind::unpause);
 }
 
 TEST_CASE("sender: a robot that says idle but not where it is, is unpaused") {
@@ -393,6 +409,109 @@ TEST_CASE("sender: a handshake makes void what was asked for") {
   CHECK(bench.sender.progress() == Progress::waiting);
   bench.stands(0, 0, 0);
   CHECK(bench.said.back() == SetPoint{0, 20});
+}
+
+TEST_CASE("sender: a stop is said ten times quickly, then slowly, with up to 100 ms on top") {
+  Sender sender{{.jitter = 0ms}};
+  sender.stop(second);
+  std::vector<int> times;
+  for (int ms = 0; ms < 5000; ++ms) {
+    const Time now = second + ms * 1ms;
+    if (sender.next(now).kind == Kind::none) continue;
+    times.push_back(ms);
+    sender.out(now);
+  }
+  CHECK(times == std::vector{0, 300, 600, 900, 1200, 1500, 1800, 2100, 2400, 2700, 3400, 4100, 4800});
+  int least = 500, most = 0;
+  for (std::uint32_t seed = 0; seed < 50; ++seed) {
+    Sender one{{}, seed};
+    one.stop(second);
+    REQUIRE(one.next(second).kind == Kind::set_point);
+    one.out(second);
+    int ms = 300;
+    while (ms < 500 && one.next(second + ms * 1ms).kind == Kind::none) ++ms;
+    least = ms < least ? ms : least;
+    most = ms > most ? ms : most;
+  }
+  CHECK(least < 310);
+  CHECK(most > 390);
+  CHECK(most <= 400);
+}
+
+TEST_CASE("sender: a turn is heard from half of it or 15 degrees on, a way from 2 cm on") {
+  struct Case {
+    SetPoint wanted;
+    int x, heading;  ///< where the robot is then
+    bool heard;
+  };
+  for (const Case& each :
+       {Case{{90, 0}, 0, 14, false}, Case{{90, 0}, 0, 15, true}, Case{{-90, 0}, 0, -15, true},
+        Case{{20, 0}, 0, 9, false}, Case{{20, 0}, 0, 10, true}, Case{{5, 0}, 0, 2, false},
+        Case{{5, 0}, 0, 3, true}, Case{{4, 0}, 0, 4, false}, Case{{0, 50}, 0, 90, false},
+        Case{{0, 50}, 1, 0, false}, Case{{0, 50}, 2, 0, true}}) {
+    CAPTURE(each.wanted.angle, each.wanted.distance, each.x, each.heading);
+    Bench bench;
+    bench.stands(0, 0, 0);
+    bench.go(each.wanted.angle, each.wanted.distance);
+    bench.pass(1s);
+    bench.at(each.x, 0, each.heading);
+    CHECK((bench.sender.progress() == Progress::heard) == each.heard);
+  }
+}
+
+TEST_CASE("sender: after a handshake neither a place nor a word that was on its way counts") {
+  Sender stood;
+  REQUIRE(stood.hear_idle(second));
+  stood.hear_update({}, second);
+  REQUIRE(stood.placed());
+  stood.restart();
+  CHECK_FALSE(stood.standing());
+  CHECK_FALSE(stood.placed());
+  // A set point that the central has not sent yet.
+  Sender asked;
+  REQUIRE(asked.hear_idle(second));
+  asked.hear_update({}, second);
+  asked.go({0, 20}, second);
+  REQUIRE(asked.next(second).set_point == SetPoint{0, 20});
+  CHECK_FALSE(asked.hear_idle(second + 5s));
+  asked.restart();
+  asked.go({0, 30}, second + 5s);
+  const auto word = asked.next(second + 6200ms);
+  CHECK(word.kind == Kind::set_point);
+  CHECK(word.set_point == SetPoint{});
+  CHECK(asked.hear_idle(second + 6200ms));
+}
+
+TEST_CASE("sender: an idle that answers a pause proves nothing of a set point") {
+  Sender sender;
+  REQUIRE(sender.hear_idle(second));
+  sender.hear_update({}, second);
+  sender.go({0, 20}, second);
+  REQUIRE(sender.next(second).kind == Kind::set_point);
+  sender.out(second);
+  sender.disturbed(second + 5s);
+  CHECK_FALSE(sender.hear_idle(second + 5s + SenderOptions{}.settle - 1ns));
+  CHECK(sender.hear_idle(second + 5s + SenderOptions{}.settle));
+}
+
+TEST_CASE("sender: a stop is said once at least, asked for twice it is one, and nowhere to go is one") {
+  Sender sender;
+  sender.stop(second);
+  CHECK(sender.hear_idle(second));  // it was not said yet
+  CHECK(sender.next(second).kind == Kind::set_point);
+  CHECK(sender.next(second).kind == Kind::none);
+  CHECK(sender.progress() == Progress::stopped);
+  Sender twice;
+  twice.stop(second);
+  REQUIRE(twice.next(second).kind == Kind::set_point);
+  twice.out(second);
+  twice.stop(second + 100ms);
+  CHECK(twice.next(second + 100ms).kind == Kind::none);
+  CHECK(twice.times_said() == 1);
+  Sender nowhere;
+  nowhere.go({0, 0}, second);
+  CHECK(nowhere.progress() == Progress::stopping);
+  CHECK(nowhere.next(second).set_point == SetPoint{});
 }
 
 }  // namespace mapper_server_sender_test
