@@ -34,6 +34,8 @@ TEST_CASE("agreement: of nothing") {
   CHECK(none.recall == 1.0);
   CHECK(none.explored == 1.0);
   CHECK(none.occupied + none.wall_cells + none.area_cells == 0);
+  CHECK(Agreement{}.f1() == 1.0);
+  CHECK(Agreement{}.explored == 1.0);
 }
 
 TEST_CASE("agreement: an empty map knows no wall and no place") {

@@ -33,6 +33,9 @@ TEST_CASE("drawing: an update is drawn, and where the robot was is known") {
   drawing.take(3, body(0.03F), update(), {});
   CHECK(drawing.path(3) == std::vector<Point>{{0, 0}, {0.03F, 0}});
   CHECK(drawing.path(4).empty());
+  drawing.take(5, body(), update(), {});
+  drawing.take(5, body(0.02F), update(), {});
+  CHECK(drawing.path(5).size() == 2);
 }
 
 TEST_CASE("drawing: while a robot turns fast nothing is drawn, and it is counted") {
@@ -53,6 +56,16 @@ TEST_CASE("drawing: while a robot turns fast nothing is drawn, and it is counted
   drawing.restart(0);
   drawing.take(0, body(), update(0), {});
   CHECK(drawing.counters().turning == 2);
+}
+
+TEST_CASE("drawing: as it is delivered, up to six degrees between two updates are drawn") {
+  Drawing drawing;
+  drawing.take(0, body(), update(0), {});
+  drawing.take(0, body(), update(6), {});
+  CHECK(drawing.counters().drawn == 2);
+  drawing.take(0, body(), update(13), {});
+  CHECK(drawing.counters().drawn == 2);
+  CHECK(drawing.counters().turning == 1);
 }
 
 TEST_CASE("drawing: what is seen where another robot stands is no wall") {

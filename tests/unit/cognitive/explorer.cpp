@@ -221,6 +221,26 @@ TEST_CASE("explorer: a hole counts from its least size on, however it lies, at t
   CHECK(explorer.left(tight).unseen == 8);
 }
 
+TEST_CASE("explorer: goals are looked for in all of a map, be it wide or tall") {
+  for (const bool tall : {false, true}) {
+    CAPTURE(tall);
+    const std::vector<std::string> rows(tall ? 11U : 1U, tall ? "." : "...........");
+    const Map map = map_of(rows, 0.10F, 11);  // without room around it
+    REQUIRE(map.box() == (tall ? Box{{0, 0}, {0, 10}} : Box{{0, 0}, {10, 0}}));
+    ExplorerOptions near = options();
+    near.view_m = 0.25F;
+    near.look_m = 1.0F;
+    Explorer explorer{near};
+    const std::array robots{scout(0, map, {0, 0})};
+    // Here it sees three cells of the border, two cells on five of them: 5 / 1.2 is more than 3 / 1.
+    CHECK(explorer.next(0, robots, map, Time{}).kind == Kind::drive);
+    REQUIRE(explorer.goal(0));
+    const Point goal = *explorer.goal(0);
+    CHECK((tall ? goal.y_m : goal.x_m) == Approx(0.25F));
+    CHECK((tall ? goal.x_m : goal.y_m) == Approx(0.05F));
+  }
+}
+
 TEST_CASE("explorer: what is left is counted by where it is") {
   const Map map = map_of({"############", "#..........", "############"});
   ExplorerOptions at = options();

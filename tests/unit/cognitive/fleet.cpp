@@ -426,6 +426,119 @@ TEST_CASE("fleet: for a second an update may have been under way when a robot wa
   }
 }
 
+TEST_CASE("fleet: of a robot that has said nothing, nothing is known") {
+  const Fleet fleet;
+  const Robot& robot = fleet.robot(0);
+  CHECK(robot.name.empty());
+  CHECK_FALSE(robot.linked);
+  CHECK_FALSE(robot.confirmed);
+  CHECK_FALSE(robot.idle);
+  CHECK_FALSE(robot.located);
+  CHECK_FALSE(robot.paused);
+  CHECK_FALSE(robot.lost);
+  CHECK_FALSE(robot.origin_known);
+  CHECK(robot.last == Kind::none);
+  CHECK(fleet.call_back(0) == Advice::stay);
+  CHECK(fleet.counters().updates + fleet.counters().idles + fleet.counters().words == 0);
+  CHECK(Saying{}.robot == 0);
+}
+
+TEST_CASE("fleet: an origin that was said is known, and stays when another robot is linked there") {
+  Fleet fleet;
+  fleet.linked(0, "AVR", second);
+  CHECK_FALSE(fleet.robot(0).origin_known);
+  fleet.set_origin(0, {1.0F, 2.0F, 0.5F});
+  CHECK(fleet.robot(0).origin_known);
+  fleet.linked(0, "Arduino", second);
+  CHECK(fleet.robot(0).name == "Arduino");
+  CHECK(fleet.robot(0).origin_known);
+  CHECK(fleet.robot(0).origin == ocm::motion::Pose{1.0F, 2.0F, 0.5F});
+}
+
+TEST_CASE("fleet: what was heard is counted by its kind, and when something was told is known") {
+  Fleet fleet;
+  fleet.feed("[3]:R:{U,0,0,0,0,0,0,0,0}\n[0]:AVR:{S,IDL}\n{U,0,0,0,0,0,0,0,0}\n", second);
+  CHECK(fleet.counters().updates == 2);
+  CHECK(fleet.counters().idles == 1);
+  CHECK(fleet.counters().early_idles == 0);
+  CHECK(fleet.counters().handshakes == 0);
+  CHECK(fleet.robot(3).heard == second);
+  CHECK(fleet.robot(0).last == Kind::update);
+  REQUIRE(fleet.go(0, {0, 20}, second + 1ms));
+  CHECK(fleet.robot(0).told == second + 1ms);
+  REQUIRE(fleet.pause(0, second + 2ms));
+  CHECK(fleet.robot(0).told == second + 2ms);
+  // A robot that has begun again stands, and is not paused.
+  fleet.feed(handshake, second + 3ms);
+  CHECK(fleet.robot(0).told == Time{});
+  CHECK_FALSE(fleet.robot(0).paused);
+  CHECK(fleet.robot(0).idle);
+  CHECK_FALSE(fleet.robot(0).located);
+}
+
+TEST_CASE("fleet: with a new link a robot is neither lost nor called back, and its deadline begins") {
+  FleetOptions options;
+  options.central = {1.0F, 0.0F};
+  options.range_m = 8.0F;
+  Fleet fleet{options};
+  fleet.linked(0, "AVR", second);
+  fleet.feed("[0]:AVR:{U,830,0,0,0,0,0,0,0}\n{S,IDL}\n", second);
+  REQUIRE(fleet.call_back(0) == Advice::far_away);
+  CHECK(fleet.robot(0).idle);
+  fleet.unlinked(0);
+  CHECK(fleet.robot(0).lost);
+  CHECK_FALSE(fleet.robot(0).idle);
+  fleet.linked(0, "AVR", second + 5s);
+  CHECK_FALSE(fleet.robot(0).lost);
+  CHECK(fleet.call_back(0) == Advice::stay);
+  fleet.expire(second + 10s);
+  CHECK_FALSE(fleet.robot(0).lost);
+  fleet.expire(second + 10001ms);
+  CHECK(fleet.robot(0).lost);
+}
+
+TEST_CASE("fleet: with its link ends what was to be said again, and what would have been an answer") {
+  Fleet fleet;
+  fleet.linked(0, "AVR", second);
+  fleet.feed(handshake, second);
+  CHECK(sayings(fleet) == "0:{S,CON}\n");
+  fleet.unlinked(0);
+  fleet.linked(0, "AVR", second + 100ms);
+  fleet.expire(second + 600ms);
+  CHECK(sayings(fleet).empty());
+  REQUIRE(fleet.ask_who(0, second + 600ms));
+  CHECK(sayings(fleet) == "0:{S,WHO}\n");
+  fleet.unlinked(0);
+  fleet.linked(0, "AVR", second + 700ms);
+  fleet.feed(handshake, second + 800ms);
+  CHECK(sayings(fleet) == "0:{S,CON}\n");
+}
+
+TEST_CASE("fleet: for two seconds a handshake is an answer") {
+  for (const auto& [after, answers] : {std::pair<ocm::base::Duration, bool>{2s - 1ns, true}, {2s, false}}) {
+    Fleet fleet;
+    fleet.feed("[0]:AVR:{U,50,0,0,0,0,0,0,0}\n", second);
+    REQUIRE(fleet.ask_who(0, second));
+    CHECK(sayings(fleet) == "0:{S,WHO}\n");
+    fleet.feed(handshake, second + after);
+    CHECK(fleet.robot(0).update.has_value() == answers);
+    CHECK(sayings(fleet).empty() == answers);
+  }
+}
+
+TEST_CASE("fleet: each eighth robot is confirmed again at the same time") {
+  Fleet fleet;
+  for (const std::size_t index : {7U, 8U})
+    fleet.feed("[" + std::to_string(index) + "]" + handshake.substr(3), second);
+  CHECK(sayings(fleet) == "7:{S,CON}\n8:{S,CON}\n");
+  fleet.expire(second + 500ms);
+  CHECK(sayings(fleet) == "8:{S,CON}\n");
+  fleet.expire(second + 639ms);
+  CHECK(sayings(fleet).empty());
+  fleet.expire(second + 640ms);
+  CHECK(sayings(fleet) == "7:{S,CON}\n");
+}
+
 TEST_CASE("fleet: any bytes: nothing but counters") {
   Random random{7};
   Fleet fleet;

@@ -25,12 +25,14 @@ std::vector<Cell> line(const Raster& raster, Point from, Point to) {
 
 TEST_CASE("grid: boxes by hand") {
   static_assert(Box{}.empty() && Box{}.cells() == 0);
+  static_assert(Cell{} == Cell{0, 0} && Box{} == Box{{0, 0}, {-1, -1}});
   constexpr Box box = Box{}.with({2, 3}).with({-1, 4});
   static_assert(box == Box{{-1, 3}, {2, 4}} && box.width() == 4 && box.height() == 2);
   static_assert(box.index({-1, 3}) == 0 && box.index({2, 3}) == 3 && box.index({-1, 4}) == 4);
   static_assert(box.has({0, 3}) && !box.has({0, 5}) && box.widened(1).has({0, 5}));
   static_assert(box.widened(1) == Box{{-2, 2}, {3, 5}});
   static_assert(!box.has({-2, 3}) && !box.has({3, 3}) && !box.has({0, 2}));
+  static_assert(box.has({-1, 3}) && box.has({2, 3}) && box.has({-1, 4}) && box.has({2, 4}));
   CHECK(box.cells() == 8);
 }
 
@@ -114,6 +116,12 @@ TEST_CASE("grid: visits end on request") {
   int n = 0;
   for_each_cell(Raster{1.0F}, {0.5F, 0.5F}, {9.5F, 0.5F}, [&](Cell) { return ++n < 3; });
   CHECK(n == 3);
+}
+
+TEST_CASE("grid: distance of two points") {
+  CHECK(distance_m(Point{1.0F, 2.0F}, Point{4.0F, -2.0F}) == Approx(5.0F));
+  CHECK(distance_m(Point{-1.0F, 2.0F}, Point{2.0F, 6.0F}) == Approx(5.0F));
+  CHECK(distance_m(Point{3.0F, 4.0F}, Point{3.0F, 4.0F}) == 0.0F);
 }
 
 TEST_CASE("grid: distance from a wall") {

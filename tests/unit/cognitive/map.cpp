@@ -215,6 +215,20 @@ TEST_CASE("map: one sharp look is enough for a wall; a beam frees what its width
   CHECK(fine.log_odds({61, 0}) == 0.0F);
 }
 
+TEST_CASE("map: a beam is as wide as it is across, whichever way the tower looks") {
+  MapOptions options;
+  options.resolution_m = 0.01F;
+  options.beam.half_width_rad = 0.2F;
+  Map map{options};
+  map.take({{0.005F, 0.005F, 0.0F}, {}}, {0, 0, 0, 45, 0, 0, 0, 0});
+  // At 50 cm, by 45 degrees: 35.4, 35.4 cm. By 11.46 more or less: 27.6, 41.7 and 41.7, 27.6 cm.
+  CHECK(map.log_odds({35, 35}) == Approx(-0.1F));
+  CHECK(map.log_odds({28, 42}) == Approx(-0.1F));
+  CHECK(map.log_odds({42, 28}) == Approx(-0.1F));
+  CHECK(map.log_odds({26, 44}) == 0.0F);
+  CHECK(map.log_odds({44, 26}) == 0.0F);
+}
+
 TEST_CASE("map: what is seen is a robot within its circle and 5 cm, and at 80 cm it is seen still") {
   const auto on_robot = [](Pose pose) {
     Map map;
@@ -265,6 +279,12 @@ TEST_CASE("map: near things: under 10 cm nothing is freed, and little is said") 
   map.take({{0.05F, 0.05F, 0.0F}, {}}, {0, 0, 0, 0, 9, 0, 0, 0});
   CHECK(map.counters().near == 1);
   CHECK(map.log_odds({1, 0}) == Approx(0.3F));
+}
+
+TEST_CASE("map: one centimetre is seen, and near; none, and less than none, is nothing") {
+  Map map{cells_of_10_cm()};
+  map.take({middle, {}}, {0, 0, 0, 0, 1, 0, -1, 9});
+  CHECK(map.counters() == MapCounters{.updates = 1, .nothing = 2, .near = 2});
 }
 
 TEST_CASE("map: beyond the range of the sensor is nothing") {

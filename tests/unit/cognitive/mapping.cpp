@@ -1,5 +1,6 @@
 #include "ocm/cognitive/mapping.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <string>
 #include <vector>
@@ -91,6 +92,8 @@ TEST_CASE("mapping: one robot draws a labyrinth, and ends") {
   CHECK(result.recall > 0.97);
   CHECK(result.explored > 0.98);
   CHECK(expedition.robots[0].bumps() == 0);
+  CHECK(expedition.mapping.counters().orders > 0);
+  CHECK(expedition.mapping.counters().orders == expedition.mapping.explorer().counters().pieces);
 }
 
 TEST_CASE("mapping: two robots draw one map, in less time, and keep apart") {
@@ -154,6 +157,44 @@ TEST_CASE("mapping: without robots it is not done, and neither is a robot that w
   CHECK(mapping.path(0).size() == 1);
 }
 
+TEST_CASE("mapping: at the end of a piece a robot is sent on at once") {
+  MappingOptions options;
+  options.explorer.longest_m = 0.08F;  // two steps
+  Expedition expedition{labyrinth(), {PerfectRobot{{0.4F, 0.4F, 0.0F}}}, {}, options};
+  int since = 1000, least = 1000;  // steps from one order to the next
+  for (int i = 0; i < 3000 && least > 4; ++i) {
+    const auto before = expedition.mapping.counters().orders;
+    expedition.step();
+    ++since;
+    if (expedition.mapping.counters().orders == before) continue;
+    least = std::min(least, since);
+    since = 0;
+  }
+  CHECK(least <= 4);
+}
+
+TEST_CASE("mapping: where the map does not show yet what a robot sees, it is not asked") {
+  Fleet fleet;
+  Mapping mapping{fleet};
+  fleet.feed("[0]:R:{S,IDL}\n{U,0,0,0,0,0,0,0,0}\n", Time{1s});  // heard by the fleet alone
+  REQUIRE(fleet.robot(0).located);
+  mapping.step(Time{1s});
+  CHECK(mapping.path(0).empty());
+  CHECK_FALSE(mapping.done());
+  mapping.heard(0, Kind::update);
+  mapping.step(Time{1s});
+  CHECK(mapping.path(0).size() == 1);
+  CHECK((mapping.done() || mapping.explorer().goal(0)));
+}
+
+TEST_CASE("mapping: where a robot sees another one is no wall, and what it sees beside itself is one") {
+  Expedition expedition{Room{}, {PerfectRobot{{0, 0, 0}}, PerfectRobot{{0.5F, 0, 0}}}};
+  expedition.say(1, "{U,0,0,0,0,0,0,0,0}\n");
+  expedition.say(0, "{U,0,0,0,0,40,15,0,0}\n");
+  CHECK(expedition.mapping.map().counters().on_robots == 1);
+  CHECK(expedition.mapping.map().counters().hits == 1);
+}
+
 TEST_CASE("mapping: a robot that has nothing to do is asked again after a second") {
   Expedition expedition{Room{ocm::test::rectangle(0, 0, 1, 1)}, {PerfectRobot{{0.5F, 0.5F, 0.0F}}}};
   REQUIRE(expedition.run(300) < 300);
@@ -203,6 +244,21 @@ TEST_CASE("mapping: who is called back does not finish its piece first") {
   CHECK(saying->words.starts_with("{U,"));
   expedition.mapping.step(expedition.now);
   CHECK_FALSE(expedition.fleet.take());  // once
+}
+
+TEST_CASE("mapping: to a robot that is lost nothing is said; when it is back it is called back at once") {
+  FleetOptions options;
+  options.range_m = 1.0F;
+  Expedition expedition{Room{ocm::test::rectangle(-1, -1, 4, 1)}, {PerfectRobot{{0, 0, 0}}}, options};
+  expedition.say(0, "{U,95,0,0,0,0,0,0,0}\n");  // drives, too far away
+  expedition.fleet.unlinked(0);
+  expedition.mapping.step(expedition.now);
+  CHECK_FALSE(expedition.fleet.take());
+  expedition.say(0, "{U,95,0,0,0,0,0,0,0}\n");
+  expedition.mapping.step(expedition.now);
+  const auto saying = expedition.fleet.take();
+  REQUIRE(saying);
+  CHECK(saying->words == "{U,0,0}\n");
 }
 
 TEST_CASE("mapping: a handshake that answers another program's question changes nothing") {
@@ -290,6 +346,28 @@ TEST_CASE("mapping: a robot that was called back and gets no better link is done
   expedition.mapping.step(expedition.now);
   CHECK_FALSE(expedition.mapping.done());
   expedition.now += 9900ms;
+  expedition.mapping.step(expedition.now);
+  CHECK_FALSE(expedition.mapping.done());
+  expedition.now += 200ms;
+  expedition.mapping.step(expedition.now);
+  CHECK(expedition.mapping.done());
+}
+
+TEST_CASE("mapping: who was called back has two minutes, and again when it was held meanwhile") {
+  FleetOptions options;
+  options.range_m = 1.0F;
+  options.central = {5.0F, 0.0F};
+  Expedition expedition{Room{ocm::test::rectangle(-1, -1, 4, 1)}, {PerfectRobot{{0, 0, 0}}}, options};
+  expedition.say(0, "{U,0,0,0,0,0,0,0,0}\n");
+  expedition.say(0, "{S,IDL}\n");
+  expedition.say(0, "{U,0,0,0,0,0,0,0,0}\n");
+  expedition.mapping.step(expedition.now);
+  CHECK_FALSE(expedition.mapping.done());
+  expedition.now += 60s;
+  expedition.mapping.hold(0, true);
+  expedition.mapping.hold(0, false);
+  expedition.mapping.step(expedition.now);
+  expedition.now += 119900ms;
   expedition.mapping.step(expedition.now);
   CHECK_FALSE(expedition.mapping.done());
   expedition.now += 200ms;

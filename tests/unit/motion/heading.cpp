@@ -41,6 +41,12 @@ static_assert(near(turn(1e-4F, 0.0F, Movement::rotating, {}), 0.75F * 1e-4F * dt
 static_assert(Turn{}.angle_rad == 0.0F && !Turn{}.gyro_rejected && !Turn{}.wheels_rejected);
 static_assert(predict({}, 0.0F, dt, {}) == Heading{0.0F, 0.0F});
 
+// A weight that cannot be is the nearest that can: all of the gyro, or nothing of it.
+constexpr HeadingModel too_much{.gyro_weight = 1.5F};
+constexpr HeadingModel too_little{.gyro_weight = -0.5F};
+static_assert(near(turn(1.0F, 0.04F, Movement::rotating, too_much), dt, 1e-7F));
+static_assert(turn(1.0F, 0.04F, Movement::rotating, too_little) == 0.04F);
+
 // The second robot: gyro alone, whatever it does. [T2 §14.3]
 constexpr HeadingModel gyro_alone{.source = HeadingSource::gyro, .gyro_threshold_rad_s = 0.01F};
 static_assert(near(turn(1.0F, 0.9F, Movement::standing, gyro_alone), dt));
@@ -49,6 +55,8 @@ static_assert(turn(0.009F, 0.9F, Movement::rotating, gyro_alone) == 0.0F);
 
 // P = 0.01 + (0.001 + 0.002) * 0.030 = 0.01009
 static_assert(near(predict({1.0F, 0.01F}, 0.1F, dt, model).angle_rad, 1.1F));
+static_assert(predict({1.0F, 0.01F}, 0.1F, dt, {.gyro_variance_rad2_per_s = -1.0F}).variance_rad2 == 0.0F,
+              "no variance is less than none");
 static_assert(near(predict({1.0F, 0.01F}, 0.1F, dt, model).variance_rad2, 0.01009F, 1e-8F));
 static_assert(predict({3.1F, 0.0F}, 0.1F, dt, model).angle_rad < 0.0F, "wrapped");
 static_assert(predict({1.0F, 0.01F}, nan, dt, model) == Heading{1.0F, 0.01F});
@@ -78,6 +86,17 @@ TEST_CASE("the variance grows without end and stays finite", "[motion]") {
     REQUIRE((heading.angle_rad > -pi && heading.angle_rad <= pi));
   }
   CHECK(heading.variance_rad2 == two_pi * two_pi);  // a whole turn: nothing more can be unknown
+}
+
+TEST_CASE("what gets too great for a float turns nothing, and leaves the heading as it was", "[motion]") {
+  const Turn blended = blend({3e38F, 0.04F}, Movement::rotating, 10.0F, model);
+  CHECK(blended.gyro_rejected);
+  CHECK(blended.angle_rad == 0.04F);
+  const Turn alone = blend({3e38F, 0.04F}, Movement::rotating, 10.0F, gyro_alone);
+  CHECK(alone.gyro_rejected);
+  CHECK(alone.angle_rad == 0.0F);
+  const HeadingModel wild{.gyro_variance_rad2_per_s = 1e30F, .wheel_variance_rad2_per_s = 1e30F};
+  CHECK(predict({1.0F, 0.01F}, 0.1F, 1e10F, wild) == Heading{1.0F, 0.01F});
 }
 
 TEST_CASE("the bias is the mean at rest, and what moves is no bias", "[motion]") {

@@ -24,6 +24,10 @@ static_assert(near(limited(1.9F, 9.0F, 2.0F, 2.0F, 0.1F), 2.0F), "at most the gr
 static_assert(near(limited(-1.9F, -9.0F, 2.0F, 2.0F, 0.1F), -2.0F));
 static_assert(limited(0.3F, nan, 2.0F, 2.0F, 0.1F) == 0.3F && limited(0.3F, 1.0F, 2.0F, 2.0F, nan) == 0.3F);
 static_assert(limited(0.3F, 1.0F, 2.0F, 2.0F, -0.1F) == 0.3F);
+static_assert(limited(3.0F, nan, 2.0F, 2.0F, 0.1F) == 2.0F &&
+                  limited(-3.0F, nan, 2.0F, 2.0F, 0.1F) == -2.0F &&
+                  limited(3.0F, 1.0F, 2.0F, 2.0F, 0.0F) == 2.0F,
+              "the last one, too, is at most the greatest");
 
 static_assert(limited(nan, 1.0F, 2.0F, 2.0F, 0.1F) == 0.0F &&
               limited(infinity, 1.0F, 2.0F, 2.0F, nan) == 0.0F);

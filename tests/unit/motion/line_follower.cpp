@@ -54,6 +54,11 @@ constexpr LineFollowerModel thin{
 static_assert(near(line_offset({100, 550, 1000, 1000}, thin).offset_m, 0.004F));
 static_assert(near(line_offset({550, 100, 1000, 1000}, thin).offset_m, -0.004F));
 static_assert(!line_offset({}, model).seen && !line_offset({1000, 1000, 1000, 1000}, model).seen);
+// What is brighter than the floor is floor, and what is darker than the line is line.
+static_assert(near(line_offset({550, 1500, 1000, 1000}, model).offset_m,
+                   line_offset({550, 1000, 1000, 1000}, model).offset_m));
+static_assert(near(line_offset({0, 550, 1000, 1000}, model).offset_m,
+                   line_offset({100, 550, 1000, 1000}, model).offset_m));
 
 constexpr LineFollowerStep step(LineFollower state, float offset_m, float speed_m_s = 0.2F) {
   return control(state, over(offset_m), speed_m_s, dt_s, model);
@@ -65,6 +70,9 @@ static_assert(step({}, 0.01F).command.turn_rad_s > 0.0F && step({}, -0.01F).comm
 // The circle through a point 40 mm ahead and 10 mm to the left has a radius of 85 mm.
 constexpr LineFollowerStep curve = step({.speed_m_s = 0.05F, .begun = true}, 0.01F);
 static_assert(near(curve.command.speed_m_s / curve.command.turn_rad_s, 0.085F, 0.01F));
+constexpr float curve_offset_m = curve.state.last_offset_m;
+static_assert(near(curve.command.speed_m_s / curve.command.turn_rad_s,
+                   (0.04F * 0.04F + curve_offset_m * curve_offset_m) / (2.0F * curve_offset_m)));
 // Far off it is slow at once, and never as slow as to stand.
 static_assert(step({.speed_m_s = 0.2F, .begun = true}, 0.015F).command.speed_m_s < 0.1F);
 static_assert(step({.speed_m_s = 0.2F, .begun = true}, 0.0165F).command.speed_m_s > 0.05F);
@@ -77,6 +85,10 @@ static_assert(speed_at(0.0F) == 0.2F);
 constexpr float half_way_m = line_offset(over(0.009F), model).offset_m;
 static_assert(near(half_way_m, 0.009F, 1e-3F));
 static_assert(near(speed_at(0.009F), 0.2F * (1.0F - 0.7F * half_way_m / 0.018F)));
+// It gets no slower beyond where the line is being lost: the thin one at 13 mm, and here it is at 14.8.
+static_assert(near(
+    control({.speed_m_s = 0.5F, .begun = true}, {864, 1000, 1000, 1000}, 0.2F, dt_s, thin).command.speed_m_s,
+    0.3F * 0.2F));
 static_assert(step({}, 0.0F, 0.0F).command == Twist{} && step({}, 0.0F, 0.0F).state.rejected == 0,
               "no speed is one, too");
 
@@ -110,6 +122,9 @@ static_assert(!step({}, 0.0F, nan).lost, "it is not given up");
 // Then it sets off again on the ramp.
 static_assert(near(step(step({.speed_m_s = 0.2F, .begun = true}, 0.0F, nan).state, 0.0F).command.speed_m_s,
                    0.01F));
+static_assert(near(step(step({.speed_m_s = 0.2F, .begun = true}, 0.05F).state, 0.0F).command.speed_m_s,
+                   0.01F),
+              "and so it does behind a search");
 
 // What begins has seen nothing, and a view without counts is dark.
 constexpr LineFollower fresh{};

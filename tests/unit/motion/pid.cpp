@@ -40,6 +40,14 @@ static_assert(near(derivative(1.0F, 0.0F, 0.5F), 4.0F), "of the error: (3 - 1) /
 static_assert(near(derivative(1.0F, 0.0F, 0.25F), 8.0F), "over the time that passed");
 static_assert(near(derivative(1.0F, 1.5F, 0.5F), 1.0F), "filtered: 0.5 / (1.5 + 0.5) of it");
 static_assert(control({}, 5.0F, 3.0F, 0.1F, wide(0.0F, 0.0F, 1.0F)).output == 0.0F, "no kick at the start");
+constexpr float fading() {
+  PidModel model = wide(0.0F, 0.0F, 1.0F);
+  model.derivative_filter_s = 1.5F;
+  Pid pid{};
+  for (const float measured : {0.0F, 1.0F, 1.0F}) pid = control(pid, 0.0F, measured, 0.5F, model);
+  return pid.output;
+}
+static_assert(near(fading(), -0.375F), "a quarter of -2, and of that three quarters a step later");
 // From 2 to 3 in half a second, whatever it was before: the next step derives from this one.
 constexpr Pid second =
     control(control({}, 0.0F, 2.0F, 0.5F, wide(0.0F, 0.0F, 1.0F)), 0.0F, 3.0F, 0.5F, wide(0.0F, 0.0F, 1.0F));
@@ -50,6 +58,8 @@ static_assert(control(control({}, 5.0F, 3.0F, 0.1F, {}), 6.0F, 2.0F, 0.1F, {}).o
 static_assert(control({}, 5.0F, 3.0F, 0.1F, {.kp = 1.0F}).output == 1.0F &&
               control({}, -5.0F, 3.0F, 0.1F, {.kp = 1.0F}).output == -1.0F);
 static_assert(control({.integral = 0.5F}, 0.5F, 0.0F, 0.1F, {.kp = 1.0F, .ki = 2.0F}).integral == 0.5F);
+static_assert(control({}, 5.0F, 0.0F, 0.1F, {.kp = 1.0F, .tracking_s = 0.2F}).integral == 0.0F,
+              "without an integral there is nothing to take down");
 static_assert(Pid{} == Pid{.integral = 0.0F,
                            .derivative = 0.0F,
                            .reference = 0.0F,
@@ -123,6 +133,9 @@ TEST_CASE("back-calculation takes the integral down while the output is at its b
   pid = control(pid, 1.0F, 0.0F, 0.03F, bounded(0.2F));
   CHECK(near(pid.integral, 0.901F));
   CHECK(pid.output == 1.0F);
+  // A step longer than 0.2 s takes all that is beyond, and no more: I = 1 + 2 * 1 * 0.5 = 2, u = 3.
+  const Pid late = control({.integral = 1.0F}, 1.0F, 0.0F, 0.5F, bounded(0.2F));
+  CHECK(near(late.integral, 0.0F));
 }
 
 TEST_CASE("clamping lets the integral go back from the bound", "[motion]") {

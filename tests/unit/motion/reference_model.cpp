@@ -49,6 +49,10 @@ TEST_CASE("a gain that cannot be is the nearest that can, for a part of the peri
   CHECK(gain_over({.gain = -0.5F, .period_s = 0.03F}, 0.01F) == 0.0F);
 }
 
+TEST_CASE("a step that is too great for a float moves nothing", "[motion]") {
+  CHECK(approach(3e38F, -3e38F, 0.25F) == 3e38F);
+}
+
 TEST_CASE("a time that cannot be moves nothing", "[motion]") {
   for (const float dt : {0.0F, -1.0F, nan, std::numeric_limits<float>::infinity()}) {
     CHECK(approach(2.0F, 8.0F, model, dt) == 2.0F);

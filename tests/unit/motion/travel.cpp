@@ -61,6 +61,12 @@ static_assert(near(after_nonsense.command.speed_m_s, 0.02F));
 constexpr Travel askew = control(started({0.3F, 0.0F, 0.1F}, model), {0.0F, 0.3F}, dt_s, model).state;
 static_assert(near(control(askew, {0.1F, 0.2F}, dt_s, model).state.distance_left_m, 0.3F - 0.1F * 0.92F));
 
+// Turned by more than a radian, to either side, the way counts for half.
+constexpr Travel turned_left = control(started({0.3F, 0.0F, 0.1F}, model), {0.0F, 2.0F}, dt_s, model).state;
+constexpr Travel turned_right = control(started({0.3F, 0.0F, 0.1F}, model), {0.0F, -2.0F}, dt_s, model).state;
+static_assert(near(control(turned_left, {0.1F, 0.0F}, dt_s, model).state.distance_left_m, 0.25F));
+static_assert(near(control(turned_right, {0.1F, 0.0F}, dt_s, model).state.distance_left_m, 0.25F));
+
 /// With numbers that a float holds exactly, to see what holds at a bound.
 constexpr TravelModel exact{.wheelbase_m = 0.5F,
                             .distance_tolerance_m = 0.25F,
@@ -101,10 +107,19 @@ static_assert(round_the_corner.state.phase == Travel::Phase::turning);
 static_assert(near(round_the_corner.state.angle_left_rad, 0.7F));
 static_assert(round_the_corner.command.speed_m_s == 0.0F && round_the_corner.command.turn_rad_s > 0.0F);
 
+// It turns where it is: of the speed that it had on the way nothing is left.
+constexpr TravelStep on_the_way = control(started({1.0F, 1.0F, 1.0F}, exact), {0.5F, 0.0F}, 0.25F, exact);
+static_assert(on_the_way.command == Twist{0.25F, 0.0F});
+static_assert(control(on_the_way.state, {0.5F, 0.0F}, 0.125F, exact).command == Twist{0.0F, 0.5F});
+
 // Nothing is left of it at its end, and what was never begun is at rest.
 constexpr TravelStep ended = control(started({0.25F, 0.0F, 1.0F}, exact), {}, 0.25F, exact);
 static_assert(ended.command == Twist{} && ended.state.last == Twist{});
 static_assert(control(ended.state, {}, 0.25F, exact).end == TravelEnd::none, "said once");
+constexpr TravelStep from_speed =
+    control(control(started({1.0F, 0.0F, 1.0F}, exact), {0.5F, 0.0F}, 0.25F, exact).state, {0.5F, 0.0F},
+            0.125F, exact);
+static_assert(from_speed.end == TravelEnd::arrived && from_speed.state.last == Twist{});
 constexpr bool at_rest(const Travel& state) {
   return state.phase == Travel::Phase::idle && state.settled == 0 && state.distance_left_m == 0.0F &&
          state.angle_left_rad == 0.0F && state.heading_rad == 0.0F && state.speed_m_s == 0.0F &&

@@ -53,6 +53,9 @@ static_assert(near(control({}, 100.0F, {30.0F, 80.0F}, 0.02F, geared).efforts.le
 static_assert(near(control({}, 100.0F, {0.0F, 0.5F}, 0.02F, model).efforts.right,
                    99.5F * (0.0005F + 0.00008F)));
 static_assert(near(control({}, 0.5F, {0.0F, 0.0F}, 0.02F, plain).efforts.right, 0.0005F, 1e-7F));
+static_assert(control({}, 0.5F, {0.0F, 0.0F}, 0.02F, model).efforts.right == 0.3F,
+              "a wheel that stands is started, however slow it should be");
+static_assert(control({}, 0.5F, {0.0F, 0.0F}, 0.02F, left_master()).efforts == Efforts{0.3F, 0.0F});
 
 /// A motor whose rate follows its effort, above what friction takes: weaker on one side.
 float motor(float rate, float effort, float strength) {
@@ -65,6 +68,9 @@ TEST_CASE("a rate that is not finite is counted, and the last effort stands", "[
   CHECK(after.state.right.rejected == 1);
   CHECK(after.state.left.rejected == 1);  // the slave does not know its master's rate
   CHECK(after.state.right.output == step.state.right.output);
+  // At the end of the way nothing is left of it but the count.
+  const WheelPiStep off = control(after.state, 0.0F, {500.0F, 600.0F}, 0.02F, model);
+  CHECK(off.state == WheelPi{.left = {.rejected = 1}, .right = {.rejected = 1}});
 }
 
 TEST_CASE("two motors that differ turn alike, and the slave slows down with its master", "[motion]") {
