@@ -1,6 +1,7 @@
 #include "ocm/analysis/blocking.hpp"
 
 #include <array>
+#include <limits>
 #include <set>
 #include <string_view>
 
@@ -44,6 +45,19 @@ static_assert(blocked(std::array{Section{2, 1, 8}, Section{3, 1, 9}}, inherit) =
 constexpr auto peers = with_blocking(std::array{Task{9, 99}, Task{9, 99}},
                                      std::array{Section{0, 1, 5}, Section{1, 1, 6}}, inherit);
 static_assert(peers[0].blocking == 0 && peers[1].blocking == 0);
+
+// The lesser of the two sums, where 63 bits do not hold the other one; where they hold neither, no bound.
+constexpr std::int64_t most = std::numeric_limits<std::int64_t>::max();
+constexpr auto of_one_task = with_blocking(
+    in_order(std::array{Task{1, most}, Task{most, most}}),
+    std::array{Section{0, 1, 1}, Section{0, 2, 1}, Section{1, 1, most - 9}, Section{1, 2, most - 9}},
+    inherit);
+static_assert(of_one_task[0].blocking == most - 9);
+constexpr auto of_two_tasks = with_blocking(
+    in_order(std::array{Task{1, most}, Task{most, most}, Task{most, most}}),
+    std::array{Section{0, 1, 1}, Section{0, 2, 1}, Section{1, 1, most - 9}, Section{2, 2, most - 9}},
+    inherit);
+static_assert(of_two_tasks[0].blocking == unbounded);
 
 // Nested: 3 claims B inside A; A is used by 0. Task 2 has B, so it can hold up 0 through 3, which waits for
 // B.

@@ -109,6 +109,43 @@ static_assert(Admission<amiro::PowerManagement, Deferred>{}.admit(ring, 20'381us
 static_assert(Admission<amiro::PowerManagement, Deferred>{}.admit(ring, 20'382us, Level::medium) ==
               base::Error::none);
 
+// Without costs only the bus counts, and all of it is the board's.
+static_assert(NoCosts::sample_us<amiro::Gyroscope> == 0 && NoCosts::waits_us<amiro::Gyroscope> == 0);
+static_assert(NoCosts::own.empty() && NoCosts::blocking_us == 0 && NoCosts::bus_percent == 100);
+static_assert(analysis::detail::BoardLoad<1>::Facts{}.bus_percent == 100);
+
+/// Two streams each 100 s, with frames of so many microseconds (0: it does not run), on 60 % of a bus.
+constexpr bool within_share(const std::array<std::uint32_t, 2>& frames_us) {
+  using Load = analysis::detail::BoardLoad<2>;
+  Load::Facts facts;
+  facts.bus_percent = 60;
+  Load::Streams streams{};
+  for (std::size_t s = 0; s < frames_us.size(); ++s) {
+    facts.sensors[s].frames_us.fill(frames_us[s]);
+    if (frames_us[s] != 0) streams[s].period_us = 100'000'000;
+  }
+  return Load::fits(facts, streams);
+}
+// In parts of 2^20, of which the board has 629'145.6: 2 * 314'468, 629'145, and 2 * 314'572.81, rounded up.
+static_assert(within_share({29'990'000, 29'990'000}));
+static_assert(within_share({59'999'900, 0}));
+static_assert(!within_share({30'000'001, 30'000'001}));
+
+/// The less urgent one's window grows by one more frame of the other a step, `period_us` times.
+constexpr bool settles(std::uint32_t period_us) {
+  using Load = analysis::detail::BoardLoad<2>;
+  Load::Facts facts;
+  facts.sensors[0].frames_us.fill(period_us - 1);
+  facts.sensors[1].frames_us.fill(period_us);
+  Load::Streams streams{};
+  streams[0] = {period_us, Level::urgent};
+  streams[1] = {10'000, Level::low};
+  return Load::fits(facts, streams);
+}
+// By then it is 15^2 us, or 16^2: in time, but in the sixteenth step the one does not grow any more, the
+// other does.
+static_assert(settles(15) && !settles(16));
+
 /// Takes frames, and remembers them.
 struct Wire {
   base::Result<bool> send(const can::Frame& frame) {

@@ -70,6 +70,9 @@ TEST_CASE("The shortest period that passes does, and the one before it does not"
       REQUIRE(found > 1 * ms);
       CHECK(check->decide(found).admitted);
       CHECK_FALSE(check->decide(found - us).admitted);
+      // The limit itself is a period that may be found.
+      CHECK(check->shortest(1 * ms, us, found) == found);
+      CHECK(check->shortest(1 * ms, us, found - us) == 0);
       // A brute search finds none before it.
       for (std::int64_t period = 1 * ms; period < found; period += 7 * us)
         REQUIRE_FALSE(check->decide(period).admitted);
@@ -132,6 +135,7 @@ TEST_CASE("A set that is too large, and numbers that mean nothing, are refused")
   check.clear();
   CHECK(check.asks({.cost = 1, .key = 3}).ok());
   CHECK(check.decide(100).admitted);
+  CHECK(check.decide(1).admitted);  // all of the bus
   CHECK_FALSE(check.decide(0).admitted);
   CHECK_FALSE(check.decide(-5).admitted);
 }

@@ -70,6 +70,11 @@ TEST_CASE("with a node of its own for each message it is the exact analysis; wit
       CAPTURE(round, m);
       REQUIRE(apart[m].response == one[m].response);
       REQUIRE(apart[m].reason == one[m].reason);
+      REQUIRE(apart[m].blocking == one[m].blocking);
+      REQUIRE(apart[m].blocked_by == one[m].blocked_by);
+      REQUIRE(apart[m].interference == one[m].interference);
+      REQUIRE(apart[m].instance == one[m].instance);
+      REQUIRE(apart[m].instances == one[m].instances);
     }
     for (Message& m : set) m.node = 0;
     const auto together = offsets.analyse(set, {});
@@ -145,6 +150,17 @@ TEST_CASE("offsets: simulated never exceeds predicted, whatever the phases of th
   CHECK(reached > messages / 4);
 }
 
+TEST_CASE("offsets: a pattern of ten thousand releases is looked at, of one more it is not") {
+  // The second comes five ticks after one of the first, so that the third meets only one of the two.
+  std::array<Message, 3> set{{{.cost = 2, .period = 10},
+                              {.cost = 2, .period = 99'990, .offset = 5},
+                              {.cost = 1, .period = 99'990, .node = 1}}};
+  CanOffsets<3, 2> analysis;
+  CHECK(analysis.analyse(set, {})[2].response == 2 + 1);  // 9'999 releases of the first, one of the second
+  set[1].period = 100'000;
+  CHECK(analysis.analyse(set, {})[2].response == 2 + 2 + 1);  // 10'000 and one
+}
+
 TEST_CASE("offsets: what cannot be bounded has a reason") {
   CanOffsets<4, 2> analysis;
   auto set = spread;
@@ -161,6 +177,9 @@ TEST_CASE("offsets: what cannot be bounded has a reason") {
   for (Message& m : set) m.period = unbounded - 7;
   CHECK(analysis.analyse(set, {})[3].response == 80);
   CHECK(analysis.analyse(spread, {}, {.terms = 3})[3].reason == Reason::too_long);
+  // Without patterns, too.
+  CHECK(analysis.analyse(spread, {}, {.terms = 3}, 0)[3].reason == Reason::too_long);
+  CHECK(analysis.analyse(spread, {}, {}, 0)[3].response == 80);
   // A bus that is full to the last bit has no room for a frame below, nor for an error.
   constexpr std::array<Message, 3> full{
       {{.cost = 5, .period = 10}, {.cost = 5, .period = 10}, {.cost = 1, .period = 1'000}}};

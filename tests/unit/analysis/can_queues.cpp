@@ -215,6 +215,18 @@ TEST_CASE("queues: what errors may cost is an error frame and the longest frame 
   CHECK(reason(83) != Reason::overloaded);
 }
 
+TEST_CASE("queues: a FIFO is looked at each time that something is queued in it") {
+  // [Davis, Burns, Bril, Lukkien 2007, table 1]: the last one's second instance is pushed farther than its
+  // first.
+  constexpr std::array<Message, 3> davis{{{.cost = 1'000, .period = 2'500, .node = 0},
+                                          {.cost = 1'000, .period = 3'500, .node = 1},
+                                          {.cost = 1'000, .period = 3'500, .node = 2}}};
+  const Explained last = respond(davis, std::array{by_priority, by_priority, fifo})[2];
+  CHECK(last.response == 3'500);
+  CHECK(last.instance == 1);
+  CHECK(last.instances > 1);
+}
+
 TEST_CASE("queues: a busy bus is analysed to its end, unless the caller allows less work") {
   // 1/3 + 1/4 of the bus above one frame as long as thousands of theirs.
   constexpr std::array<Message, 3> busy{
@@ -241,6 +253,12 @@ TEST_CASE("where every queue is by priority, it is the exact analysis") {
       REQUIRE(one[m].reason == other[m].reason);
       REQUIRE(one[m].interference >= other[m].interference);
       REQUIRE(one[m].blocked_by == other[m].blocked_by);
+      REQUIRE(one[m].blocking == other[m].blocking);
+      if (!one[m].bounded()) continue;
+      REQUIRE(one[m].instance == other[m].instance);
+      REQUIRE(one[m].instances == other[m].instances);
+      REQUIRE(one[m].largest == other[m].largest);
+      REQUIRE(one[m].largest_share == other[m].largest_share);
     }
   }
 }

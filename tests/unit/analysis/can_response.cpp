@@ -86,6 +86,13 @@ static_assert(can_response_times(over)[0].response == 20);
 static_assert(can_response_times(over)[1].reason == Reason::overloaded);
 static_assert(can_response_times(over)[2].reason == Reason::overloaded);
 
+// Of those above, the one that asks for the most is named, also where its frame is long and fills the bus 8
+// times.
+static_assert(can_response_times(std::array<Message, 3>{{{.cost = 1LL << 31, .period = 1LL << 28},
+                                                         {.cost = 5, .period = 1},
+                                                         {.cost = 1, .period = 1'000}}})[2]
+                  .largest == 0);
+
 /// The formulas as they stand in the paper, from scratch for each message: slow, and on other paths. The
 /// response of each instance.
 std::vector<std::int64_t> by_the_paper(const std::vector<Message>& set, std::size_t m, const CanBus& bus) {
@@ -266,6 +273,27 @@ TEST_CASE("CAN: huge and tiny numbers end with a reason") {
                                       {.cost = 1'000'000, .period = 1'000'000'000'000'000'000}}};
   CanResponse<3> analysis;
   CHECK(analysis.analyse(close, {}, CanTest::exact, {.terms = 1'000})[2].reason == Reason::too_long);
+}
+
+TEST_CASE("what is said of a set is the same whatever was analysed before") {
+  CanResponse<3> analysis;
+  const auto as_alone = [&](const std::array<Message, 3>& set, const CanBus& bus) {
+    REQUIRE(analysis.analyse(davis, {.bit = 8})[2].bounded());
+    const auto again = analysis.analyse(set, bus);
+    const auto alone = can_response_times(set, bus);
+    for (std::size_t m = 0; m < set.size(); ++m) {
+      CAPTURE(m);
+      CHECK(again[m] == alone[m]);
+    }
+  };
+  as_alone(over, {.bit = 1});
+  as_alone(tau, {.bit = 1, .errors = {.burst = 1}});  // its longest frame is not that of before
+  auto too_much = over;
+  too_much[0].cost = 30;  // by itself
+  as_alone(too_much, {.bit = 1});
+  auto bad = davis;
+  bad[1].period = 0;
+  as_alone(bad, {.bit = 8});
 }
 
 TEST_CASE("2048 messages, one of them overloading the bus: all below it are found overloaded") {

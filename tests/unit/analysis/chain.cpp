@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <random>
+#include <span>
 #include <vector>
 
 #include <catch2/catch.hpp>
@@ -50,6 +51,23 @@ static_assert(by_hand.chain[1].inherited == 6 && by_hand.chain[1].hands_on == 6 
 static_assert(by_hand.chain[2].inherited == 0 && by_hand.chain[2].hands_on == 4);
 static_assert(by_hand.chain[4].inherited == 4 + 8 && by_hand.chain[4].hands_on == 12);
 static_assert(by_hand.chain[2].waits == 50 && by_hand.chain[2].until == 85);
+
+// All jitter is known after one pass, and that none grows any more after two: so many, and no more, are made.
+constexpr ChainBound solve_in(int passes) {
+  auto chain = hops;
+  return bound_chain(
+      chain, 208, [](std::size_t i, std::int64_t jitter) { return in(alone[i] + jitter); }, passes);
+}
+static_assert(solve_in(2).ok() && solve_in(2).latency == by_hand.bound.latency);
+static_assert(solve_in(1).reason == Reason::too_long && solve_in(1).hop == no_index);
+static_assert(solve_in(1).latency == unbounded && solve_in(1).age == unbounded);
+
+// No hop is faster than it is slow, whatever is said of its best.
+static_assert([] {
+  std::array<Hop, 1> chain{{{.activation = sampled, .period = 100, .best = 50}}};
+  const ChainBound bound = bound_chain(chain, 120, [](std::size_t, std::int64_t) { return in(20); });
+  return bound.ok() && bound.latency == 20 && bound.shortest == 20 && chain[0].hands_on == 0;
+}());
 
 // The same with a sensor that may be released 7 late and an operator 9 late: each is over so much later, and
 // of the sensor's own jitter all is handed on, of the operator's own, too, but nothing of what came before
@@ -178,6 +196,12 @@ TEST_CASE("chains: what cannot be bounded has a reason and a hop") {
   CHECK(bound_chain(chain, 100, circle).reason == Reason::too_long);
   const auto huge = [](std::size_t, std::int64_t) { return in(unbounded - 1); };
   CHECK(bound_chain(chain, 100, huge).reason == Reason::too_long);
+  // A sum that 63 bits do not hold is the fault of the hop at which it is one; of the age, of none.
+  std::array<Hop, 2> sampling{{{.activation = sampled, .period = 10}, {.activation = sampled, .period = 10}}};
+  CHECK(bound_chain(sampling, 100, huge).reason == Reason::too_long);
+  CHECK(bound_chain(sampling, 100, huge).hop == 1);
+  const ChainBound old = bound_chain(std::span{sampling}.first(1), unbounded, huge);
+  CHECK((old.reason == Reason::too_long && old.hop == no_index && old.age == unbounded));
 
   // A hop that takes no time is the longest if it is all there is; of equal ones the first.
   std::array<Hop, 2> quick{{{.activation = sampled, .period = 10}, {}}};
@@ -186,6 +210,8 @@ TEST_CASE("chains: what cannot be bounded has a reason and a hop") {
 
   std::array<Hop, 1> event{{{.activation = triggered}}};
   CHECK(bound_chain(event, 100, circle).reason == Reason::bad_input);
+  std::array<Hop, 1> fastest{{{.activation = sampled, .period = 1}}};
+  CHECK(bound_chain(fastest, 1, [](std::size_t, std::int64_t jitter) { return in(jitter); }).ok());
   std::array<Hop, 1> timeless{{{.activation = sampled}}};
   const ChainBound refused = bound_chain(timeless, 100, circle);
   CHECK(refused.reason == Reason::bad_input);

@@ -34,6 +34,10 @@ static_assert(
 // Equal identifiers, and numbers that mean nothing.
 static_assert(
     std::is_same_v<first_late<Traffic<1, First, First>>, misses_its_deadline<First, unbounded, 200>>);
+using Twice = Traffic<1, First, Second, First>;  // both of it; the other one waits for both
+static_assert(Twice::results[0].reason == Reason::bad_input && Twice::results[2].reason == Reason::bad_input);
+static_assert(Twice::results[0].deadline == 200 && Twice::results[2].deadline == 200);
+static_assert(Twice::results[1].response == 300);
 static_assert(!schedulable<Traffic<1, Sent<0, 5, 1>>>);
 
 // A frame of a topic, at the topic's own numbers: 131 bits of 2 us.

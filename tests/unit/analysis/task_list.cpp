@@ -60,6 +60,30 @@ static_assert(CostsOf<PatientFacts>::sample_us<amiro::Gyroscope> == 10);
 static_assert(CostsOf<PatientFacts>::waits_us<amiro::Gyroscope> == 4);
 static_assert(CostsOf<PatientFacts>::own[0].cost_us == 10 && CostsOf<PatientFacts>::own[0].waits_us == 4);
 
+static_assert(CostsOf<PatientFacts>::blocking_us == 0);
+
+/// A board of one task, in nanoseconds.
+template <std::int64_t cost, std::int64_t waits, std::int64_t held>
+struct OnlyFacts {
+  struct Only {
+    static constexpr std::string_view name = "gyroscope";
+    static constexpr bool own = true;
+    static constexpr Task task{.cost = cost, .period = 999'999, .level = 2, .waits = waits};
+  };
+  using Tasks = TaskList<Only>;
+  static constexpr std::int64_t blocking = held;
+  static constexpr std::uint32_t bus_percent = 100;
+};
+// Whole microseconds are those; a nanosecond more is one more, of what it waits for, and of a period, none.
+using Whole = CostsOf<OnlyFacts<9'000, 4'000, 1'000>>;
+static_assert(Whole::sample_us<amiro::Gyroscope> == 9 && Whole::own[0].cost_us == 9);
+static_assert(Whole::waits_us<amiro::Gyroscope> == 4 && Whole::own[0].waits_us == 4);
+static_assert(Whole::blocking_us == 1);
+using More = CostsOf<OnlyFacts<9'001, 4'999, 1'001>>;
+static_assert(More::sample_us<amiro::Gyroscope> == 10 && More::own[0].cost_us == 10);
+static_assert(More::waits_us<amiro::Gyroscope> == 4 && More::own[0].waits_us == 4);
+static_assert(More::blocking_us == 2 && More::own[0].period_us == 999);
+
 TEST_CASE("A list finds its tasks by name") {
   CHECK(Facts::Tasks::cost_us("quick") == 2);
   CHECK(Facts::Tasks::cost_us("slow") == 0);
