@@ -455,7 +455,7 @@ TEST_CASE("fleet: an origin that was said is known, and stays when another robot
   CHECK(fleet.robot(0).origin == ocm::motion::Pose{1.0F, 2.0F, 0.5F});
 }
 
-TEST_CASE("fleet: what was heard is counted by its kind, and when something was told is known") {
+TEST_CASE("fleet: what was heard is counted by its kind, and when something was sent is known") {
   Fleet fleet;
   fleet.feed("[3]:R:{U,0,0,0,0,0,0,0,0}\n[0]:AVR:{S,IDL}\n{U,0,0,0,0,0,0,0,0}\n", second);
   CHECK(fleet.counters().updates == 2);
