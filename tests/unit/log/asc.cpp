@@ -283,6 +283,27 @@ TEST_CASE("asc: a block that begins at 0 has its own date") {
   CHECK(trigger.entries.at(0).time == at(start + 10 * second));
 }
 
+TEST_CASE("asc: in each block of a log of relative times they count from its own date") {
+  const Zone zone{"UTC0"};
+  const auto log = read_all<AscReader>(
+      "date Tue Nov 14 10:13:20.000 pm 2023\nbase hex  timestamps relative\n"
+      "Begin Triggerblock Tue Nov 14 10:13:20.000 pm 2023\n"
+      "0.000000 Start of measurement\n0.5 1 123 Rx d 0\nEnd TriggerBlock\n"
+      "Begin Triggerblock Tue Nov 14 10:13:30.000 pm 2023\n"
+      "0.000000 Start of measurement\n0.25 1 123 Rx d 0\nEnd TriggerBlock\n");
+  REQUIRE(log.entries.size() == 2);
+  CHECK(log.entries[0].time == at(start + second / 2));
+  CHECK(log.entries[1].time == at(start + 10 * second + second / 4));
+}
+
+TEST_CASE("asc: relative times that add up to more than 64 bits hold are said") {
+  const auto log = read_all<AscReader>(
+      "base hex  timestamps relative\n9223372036.0 1 123 Rx d 0\n9223372036.0 1 123 Rx d 0\n");
+  CHECK(log.entries.size() == 1);
+  REQUIRE(log.complained == 1);
+  CHECK(log.complaints[0].cause == Cause::time);
+}
+
 TEST_CASE("asc: what is no frame is passed over without a word") {
   const Zone zone{"UTC0"};
   const auto log = read_all<AscReader>(
@@ -499,6 +520,7 @@ TEST_CASE("asc: entries at random survive to the microsecond, in any time zone")
       wanted.interface = log.entries[i].interface;
       INFO(i);
       REQUIRE(log.entries[i] == wanted);
+      REQUIRE(log::testing::can_exist(log.entries[i]));
     }
   }
 }

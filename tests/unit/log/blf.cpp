@@ -395,6 +395,76 @@ TEST_CASE("blf: a complaint says what is wrong, and where") {
   CHECK(read_blf("").complained == 0);
 }
 
+TEST_CASE("blf: objects of the shortest size, and containers without one, are passed over") {
+  const std::string shortest = bytes("4C4F424A 1000 0100 10000000 41000000");
+  const std::string file = head + shortest + container("") + container(shortest + message);
+  const auto log = read_blf(file);
+  CHECK(log.complained == 0);
+  CHECK(log.entries.size() == 1);
+  const auto headless =
+      read_blf(head + bytes("4C4F424A 1000 0100 14000000 0A000000 00000000") + container(message));
+  CHECK(headless.entries.size() == 1);
+  REQUIRE(headless.complained == 1);
+  CHECK(headless.complaints[0].cause == Cause::length);
+  CHECK(headless.complaints[0].detail == "a container");
+  CHECK(cause_of(object(1, 5, "")) == Cause::length);
+}
+
+TEST_CASE("blf: damage is told of once, and the next one again") {
+  const std::string rubbish(200, 'x');
+  const auto between = read_blf(head + rubbish + container(message) + rubbish + container(message));
+  CHECK(between.entries.size() == 2);
+  CHECK(between.complained == 2);
+  const auto over = read_blf(head + container(rubbish) + container(rubbish + message + rubbish + message));
+  CHECK(over.entries.size() == 2);
+  CHECK(over.complained == 2);
+  std::string small = message;
+  small[8] = 15;
+  const auto behind = read_blf(head + container(small + message + rubbish + message));
+  CHECK(behind.entries.size() == 2);
+  CHECK(behind.complained == 2);
+  std::string large = message;
+  large[7] = '\x7F';  // behind another signature it is the highest byte of a size
+  const auto twice = read_blf(head + container("LOBJ" + large + rubbish + message));
+  CHECK(twice.entries.size() == 2);
+  CHECK(twice.complained == 2);
+}
+
+TEST_CASE("blf: a head of 72 bytes is long enough, a shorter one is none") {
+  for (const char size : {'\x48', '\x0A'}) {  // a size that cannot be is at least so much
+    std::string shortest = head.substr(0, 72);
+    std::fill_n(shortest.begin() + 4, 4, '\0');
+    shortest[4] = size;
+    const auto log = read_blf(shortest + container(message));
+    CHECK(log.complained == 0);
+    REQUIRE(log.entries.size() == 1);
+    CHECK(log.entries[0].time == at(start + 5));
+    const auto shorter = read_blf(shortest.substr(0, 71));
+    REQUIRE(shorter.complained == 1);
+    CHECK(shorter.complaints[0].cause == Cause::truncated);
+  }
+}
+
+TEST_CASE("blf: nothing of the entry before stays") {
+  const std::string file =
+      head +
+      container(object(1, 5, "0100 00 0F 23010000 1122334455667788") +
+                object(101, 5,
+                       "01 0F 40 00 23010080 00000000 00700000 00000000 00000000 00000000 00000000"
+                       "0000 01 00 00000000" +
+                           counted(64)) +
+                message + object(1, 5, "0100 80 05 23010000 1122334455667788") +
+                object(1, 5, "0100 00 0F 23010000 1122334455667788") + object(2, 5, "0100 0600") + message);
+  const Zone zone{"UTC0"};
+  MemorySource source{file};
+  const auto log = log::testing::read_from<BlfReader>(source, 1, Inflate{repeat});
+  CHECK(log.complained == 0);
+  REQUIRE(log.entries.size() == 7);
+  CHECK(log.entries[1].length == 64);
+  for (const Entry& entry : log.entries) CHECK(log::testing::can_exist(entry));
+  CHECK(log.entries[2] == log.entries[6]);
+}
+
 TEST_CASE("blf: up to three bytes between objects are filling") {
   for (const std::size_t bytes_between : {1U, 2U, 3U}) {
     const std::string filling(bytes_between, '\0');

@@ -26,6 +26,23 @@ TEST_CASE("bytes are appended, overwritten and emptied") {
   CHECK(bytes.size() == 0);
 }
 
+TEST_CASE("what is appended has room where there is none any more") {
+  using namespace std::string_literals;
+  for (std::size_t left = 0; left <= 9; ++left) {
+    Bytes bytes;
+    bytes.zeros((std::size_t{1} << 16) - left);  // what is taken at first is so large
+    bytes.append('c');
+    bytes.append("ab");
+    bytes.little(std::uint32_t{0x0403'0201});
+    bytes.zeros(1);
+    CHECK(bytes.view().substr(bytes.size() - 8) == "cab\x01\x02\x03\x04\0"s);
+  }
+  Bytes bytes;
+  bytes.append('a');
+  bytes.zeros(std::size_t{1} << 17);
+  CHECK(bytes.view().front() == 'a');
+}
+
 TEST_CASE("room that is not used is not part of the run, and growing keeps what is there") {
   Bytes bytes;
   bytes.append("begin");

@@ -51,6 +51,24 @@ TEST_CASE(
   CHECK(CalendarTime{} == CalendarTime{1970, 1, 1, 0, 0, 0});
 }
 
+TEST_CASE("calendar: the hours before and behind the beginning of summer time") {
+  {
+    const Zone zone{"CET-1CEST,M3.5.0,M10.5.0/3"};  // at 1:00 UTC
+    CHECK(seconds_of({2023, 3, 26, 1, 30, 0}) == 1'679'790'600);
+    CHECK(seconds_of({2023, 3, 26, 3, 30, 0}) == 1'679'794'200);
+  }
+  const Zone zone{"EST5EDT,M3.2.0,M11.1.0"};  // at 7:00 UTC
+  CHECK(seconds_of({2023, 3, 12, 1, 30, 0}) == 1'678'602'600);
+  CHECK(seconds_of({2023, 3, 12, 3, 30, 0}) == 1'678'606'200);
+}
+
+TEST_CASE("calendar: a time zone that is set later counts from then on") {
+  const Zone zone{"UTC0"};
+  CHECK(local_time_of(0).hour == 0);
+  setenv("TZ", "EST5", 1);
+  CHECK(local_time_of(0).hour == 19);
+}
+
 TEST_CASE("calendar: what no calendar has") {
   const Zone zone{"UTC0"};
   CHECK(seconds_of({2024, 2, 29, 0, 0, 0}));
@@ -74,6 +92,8 @@ TEST_CASE("calendar: days of the week") {
   CHECK(weekday_of({2023, 11, 14, 0, 0, 0}) == 2);  // Tuesday, as date(1) says
   CHECK(weekday_of({2023, 12, 31, 0, 0, 0}) == 0);  // Sunday
 }
+
+static_assert(month_of("Xyz") == 0 && month_of("M\x80r") == 3);
 
 TEST_CASE("calendar: months in English and German") {
   CHECK(month_of("Jan") == 1);

@@ -136,6 +136,8 @@ TEST_CASE("what is no line of candump's is refused by cause, and the rest is rea
   CHECK(refusal_of("(1436509052.24971x) can0 123#") == Cause::syntax);
   CHECK(refusal_of("(1436509052.2497130001) can0 123#") == Cause::syntax);
   CHECK(refusal_of("(-436509052.249713) can0 123#") == Cause::syntax);
+  CHECK(refusal_of("x1436509052.249713) can0 123#") == Cause::syntax);
+  CHECK(refusal_of("(1436509052x249713) can0 123#") == Cause::syntax);
   CHECK(refusal_of("(9223372036.854776) can0 123#") == Cause::time);
   CHECK(refusal_of("(9999999999.854776) can0 123#") == Cause::time);
   CHECK(refusal_of(begin + "123") == Cause::syntax);
@@ -156,6 +158,8 @@ TEST_CASE("what is no line of candump's is refused by cause, and the rest is rea
   CHECK(refusal_of(begin + "123##1000102030405060708") == Cause::length);  // 9 bytes
   CHECK(refusal_of(begin + "123##1" + std::string(130, '0')) == Cause::length);
   CHECK(refusal_of(begin + "123##10") == Cause::syntax);
+  CHECK(refusal_of(begin + "123##1012") == Cause::syntax);
+  CHECK(refusal_of(begin + "123##1012345678") == Cause::syntax);
   CHECK(refusal_of(begin + "20000004##100") == Cause::syntax);
   CHECK(refusal_of(begin + "123#00 X") == Cause::syntax);
   CHECK(refusal_of(begin + "123#00 R R") == Cause::syntax);

@@ -56,6 +56,17 @@ TEST_CASE("channels: the last number that a name may have, and the first that it
   }
 }
 
+TEST_CASE("channels: what is no name of a channel is not taken for the first one's") {
+  for (const auto* name : {"can02", "canary", "can", "can255", "vcan0", ""}) {
+    Interfaces interfaces;
+    interfaces.add(name);
+    ChannelsWritten channels;
+    CAPTURE(name);
+    CHECK(channels.of(0, interfaces).number == 1);
+    CHECK_FALSE(channels.of(0, interfaces).names_it);
+  }
+}
+
 TEST_CASE("channels: an error of which something is known") {
   const Entry plain{{}, {0x80, 8, {}, can::Format::error}};
   CHECK(is_bus_error(plain));

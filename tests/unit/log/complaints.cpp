@@ -26,6 +26,8 @@ TEST_CASE("what is shown of a log cannot command a terminal, and is short") {
   CHECK(Complaints::printable(std::string(60, 'x')) == std::string(60, 'x'));
 }
 
+static_assert(Place{} == Place{0, false} && Place{5} == Place{5, false});
+
 TEST_CASE("each cause has its words, and a place says what it counts") {
   for (std::size_t i = 0; i < causes; ++i)
     for (std::size_t j = 0; j < i; ++j)

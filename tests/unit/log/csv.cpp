@@ -15,6 +15,8 @@ using log::Lost;
 using test::RandomEntries;
 using Log = test::ReadLog<log::CsvReader>;
 
+static_assert(log::csv::max_base64 == 88);  // of 64 bytes
+
 const std::string head = std::string{log::csv::head} + "\n";
 
 base::Time at_ns(std::int64_t ns) {
@@ -73,6 +75,9 @@ TEST_CASE("times are read as Python prints them") {
   CHECK(time_of("1436509052.2497131824493408203125") == at_ns(1'436'509'052'249'713'182));
   CHECK(time_of("0.12345678950000000000001") == at_ns(123'456'789));
   CHECK(time_of("12") == at_ns(12'000'000'000));
+  CHECK(time_of("1436509052.2497131824") == at_ns(1'436'509'052'249'713'182));
+  CHECK_FALSE(time_of("9999999999999.123456789"));
+  CHECK_FALSE(time_of("9999999999999.1234567890"));
   CHECK_FALSE(time_of(""));
   CHECK_FALSE(time_of("nan"));
   CHECK_FALSE(time_of("9999999999.0"));
@@ -137,6 +142,8 @@ TEST_CASE("rows that no writer makes are refused by cause, and the rest is read"
   CHECK(refusal_of("1.0,0x1,0,0,0,9,AAAAAAAAAAAA") == Cause::length);
   CHECK(refusal_of("1.0,0x1,0,1,0,1,AA==") == Cause::length);
   CHECK(refusal_of("1.0,0x1,0,1,0,9,") == Cause::length);
+  CHECK(refusal_of("1.0,0x1,0,1,0,12,") == Cause::length);
+  CHECK(refusal_of("1.0,0x1,1,0,1,12,AAAAAAAAAAAAAAAA") == Cause::length);
   CHECK(refusal_of("1.0,0x1,0,0,0,1,AA") == Cause::syntax);
   CHECK(refusal_of("1.0,0x1,0,0,0,1,A===") == Cause::syntax);
   CHECK(refusal_of("1.0,0x1,0,0,0,1,A*==") == Cause::syntax);
@@ -178,6 +185,7 @@ TEST_CASE("base64 of every length, there and back") {
     CHECK(again == bytes);
   }
   std::array<std::uint8_t, log::max_fd_length> bytes{};
+  CHECK_FALSE(log::csv::from_base64(std::string{"A\0AA", 4}, bytes));
   CHECK_FALSE(log::csv::from_base64(std::string(92, 'A'), bytes));
   CHECK_FALSE(log::csv::from_base64(std::string(88, 'A'), bytes));  // 66 bytes
 }
@@ -234,6 +242,33 @@ TEST_CASE("rows come out of a pipe when they come in") {
 
 TEST_CASE("the head line is one as the first line alone") {
   CHECK(refusal_of(log::csv::head) == Cause::syntax);
+}
+
+TEST_CASE("rows are read without a head line, and with blank ones between them") {
+  const Log log{"0.0,0x1,0,0,0,0,\n\n0.0,0x2,0,0,0,0,\n"};
+  CHECK(log.reader.complaints().total() == 0);
+  REQUIRE(log.entries.size() == 2);
+  CHECK(log.entries[1].id == 2);
+}
+
+TEST_CASE("the longest row has room, however much there is already") {
+  Entry entry;
+  entry.time = at_ns(-INT64_MAX);
+  entry.id = can::max_extended_id;
+  entry.format = can::Format::extended;
+  entry.flags = log::flag::fd;
+  entry.data.fill(0);
+  entry.length = 64;
+  const auto interfaces = test::interfaces_named({"can0"});
+  const std::string row = "-9223372036.854775807,0x1fffffff,1,0,0,64," + std::string(86, 'A') + "==\n";
+  for (std::size_t left = 0; left != 2 * row.size(); ++left) {
+    log::Bytes out;
+    // What is taken at first is so large; Bytes asserts that no more is written.
+    out.zeros((std::size_t{1} << 16) - left);
+    log::CsvWriter writer;
+    writer.write(out, std::span{&entry, 1}, interfaces);
+    CHECK(out.view().substr(out.size() - row.size()) == row);
+  }
 }
 
 TEST_CASE("python-can's rows are recognised by their head line") {

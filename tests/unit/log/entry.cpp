@@ -16,6 +16,19 @@ TEST_CASE("an entry keeps what a classic frame has, and gives it back") {
   CHECK(*entry.classic() == frame);
 }
 
+TEST_CASE("an entry of which nothing is said is of a frame without identifier and data") {
+  const Entry none;
+  CHECK(none == Entry{{}, can::Frame{}, 0});
+  CHECK(none.id == 0);
+  CHECK(none.interface == 0);
+  CHECK(none.length == 0);
+  CHECK(none.flags == 0);
+  CHECK(none.raw_dlc == 0);
+  for (std::size_t i = 0; i < 8; ++i) CHECK(none.data[i] == 0);
+  CHECK(Entry{{}, can::Frame{}}.interface == 0);
+  CHECK(Entry{{}, can::AnyFrame{}}.interface == 0);
+}
+
 TEST_CASE("an entry of a frame of either kind is that frame again") {
   can::AnyFrame frame;
   frame.id = 0x1F334455;

@@ -12,6 +12,9 @@ namespace log_input_test {
 using namespace ocm;
 using log::Input;
 
+// 16 MiB, and what quick ways of readers look at behind a view.
+static_assert(Input::longest == 16'777'216 && Input::padding == 64);
+
 std::vector<std::string> lines_of(log::Source& source) {
   Input input{source};
   std::vector<std::string> lines;
@@ -82,6 +85,43 @@ TEST_CASE("peek shows without taking, and zeros behind") {
   CHECK(rest == "cdef");
   for (std::size_t i = 0; i < Input::padding; ++i) CHECK(rest.data()[rest.size() + i] == '\0');
   CHECK(input.peek(Input::longest + 1) == "cdef");
+}
+
+TEST_CASE("peek reads no more than it needs") {
+  test::Drops drops{"abcdef", 2};
+  Input input{drops};
+  CHECK(input.peek(2) == "ab");
+  CHECK(input.peek(2) == "ab");
+  CHECK(drops.reads == 1);
+}
+
+TEST_CASE("zeros are behind what is read where something else has stood") {
+  test::Drops drops{"abcdefghij", 8};
+  Input input{drops, 8};
+  CHECK(input.peek(8) == "abcdefgh");
+  input.skip(8);
+  const auto rest = input.peek(2);
+  CHECK(rest == "ij");
+  for (std::size_t i = 0; i < Input::padding; ++i) CHECK(rest.data()[rest.size() + i] == '\0');
+}
+
+TEST_CASE("lines are whole however little room there is at first") {
+  std::string text;
+  std::vector<std::string> expected;
+  for (std::size_t i = 0; i < 40; ++i) {
+    expected.emplace_back(i * 7 % 40, static_cast<char>('a' + i % 26));
+    text += expected.back() + '\n';
+  }
+  for (std::size_t room = 1; room <= 80; ++room) {
+    log::MemorySource source{text};
+    Input input{source, room};
+    std::vector<std::string> lines;
+    std::string_view line;
+    while (input.take_line(line) == Input::Line::whole) lines.emplace_back(line);
+    CAPTURE(room);
+    CHECK(lines == expected);
+    CHECK(input.offset() == text.size());
+  }
 }
 
 TEST_CASE("discard takes more than memory holds") {

@@ -103,6 +103,7 @@ TEST_CASE("mcap: a record as long as a footer is no footer") {
 TEST_CASE("mcap: random entries come back the same, whatever the batches and pieces") {
   auto entries = test::RandomEntries{3, {}}.many(3000);
   entries[7].time = base::Time{base::Duration{-1}};
+  entries[8].time = base::Time{};
   McapWriter writer{"x", {{"robot", "r"}}};
   const std::vector<Recorded> recorded{{5, 1}, {0, 0}, {7, 70'000'000'000}};
   const std::string file = log::testing::write_all(writer, entries, three(), recorded);
@@ -116,12 +117,41 @@ TEST_CASE("mcap: random entries come back the same, whatever the batches and pie
       for (std::size_t i = 0; i < entries.size(); ++i) {
         REQUIRE(log.entries[i] == entries[i]);
         REQUIRE(log.names[i] == three().name(entries[i].interface));
+        REQUIRE(log::testing::can_exist(log.entries[i]));
       }
       REQUIRE(log.recorded.size() == 3);
       CHECK(log.recorded[2].received == 7);
       CHECK(log.recorded[2].dropped == 70'000'000'000);
     }
   }
+}
+
+TEST_CASE("mcap: a file says who wrote it, and what it is about if there is anything") {
+  McapWriter writer{"x", {{"robot", "r"}}};
+  const std::string file = log::testing::write_all(writer, {}, three());
+  CHECK(file.starts_with(magic + record(1, string("") + string("x"))));
+  CHECK(file.find(record(12, string("ocm") + string(string("robot") + string("r")))) != std::string::npos);
+  McapWriter plain{"x"};
+  const std::string without = log::testing::write_all(plain, {}, three());
+  CHECK(without.find(string("ocm") + string("")) == std::string::npos);
+}
+
+TEST_CASE("mcap: an interface of which only the frames are known has a channel, too") {
+  Interfaces one;
+  one.add("can0");
+  const std::vector<Entry> entries{Entry{{}, {1, 0, {}}, 0}, Entry{{}, {2, 0, {}}, 1}};
+  McapWriter writer;
+  const std::string file = log::testing::write_all(writer, entries, one);
+  MemorySource source{file};
+  Input input{source};
+  McapReader reader{input};
+  std::array<Entry, 3> some;
+  REQUIRE(reader.read(some) == 2);
+  CHECK(some[0] == entries[0]);
+  CHECK(some[1] == entries[1]);
+  CHECK(reader.read(some) == 0);
+  CHECK(reader.interfaces().size() == 2);
+  CHECK(reader.interfaces().name(1).empty());
 }
 
 TEST_CASE("mcap: there is a channel of each interface that is known, and no other") {
@@ -179,6 +209,94 @@ TEST_CASE("mcap: a pipe shows what is there, and waits for nothing else") {
   }
 }
 
+TEST_CASE("mcap: a pipe shows all that is there to its last byte") {
+  const std::string first = head + said + chunk(frame + frame) + chunk(frame);
+  const std::string file = first + frame + tail;
+  test::Drops source{file, first.size()};
+  Input input{source};
+  McapReader reader{input};
+  Entry some[10];
+  CHECK(reader.read(some) == 3);
+  CHECK(source.reads == 1);
+  CHECK(reader.read(some) == 1);
+  CHECK(reader.read(some) == 0);
+  CHECK(reader.complaints().total() == 0);
+}
+
+TEST_CASE("mcap: a complaint says what is wrong, and where") {
+  struct Case {
+    std::string behind;
+    Cause cause;
+    std::string detail;
+    std::size_t place, entries;
+  };
+  const std::string before = head + said;
+  const std::size_t begin = before.size(), in_chunk = begin + 49;
+  const std::string backwards{frame.rbegin(), frame.rend()};
+  const std::string odd = frame + "\5", odd_backwards{odd.rbegin(), odd.rend()};
+  std::string longer = chunk(frame), huge = record(12, std::string(60, '\6'));
+  longer.replace(41, 8, number(frame.size() + 1, 8));
+  huge.replace(1, 8, number(std::uint64_t{1} << 32, 8));
+  const std::size_t footer = begin + frame.size() + 13;
+  for (const Case& each : std::vector<Case>{
+           {frame, Cause::truncated, "no end of the file", begin + frame.size(), 1},
+           {frame + "\5", Cause::truncated, "the beginning of a record", begin + frame.size(), 1},
+           {frame + tail.substr(0, tail.size() - 1), Cause::truncated, "the file's end", footer, 1},
+           {frame + tail + "x", Cause::syntax, "the file does not end behind its footer", footer, 1},
+           {std::string(20, '\0') + chunk(frame) + tail, Cause::syntax, "no record begins here", begin, 1},
+           {frame + frame.substr(0, 20), Cause::truncated, "a message", begin + frame.size(), 1},
+           {schema.substr(0, 20), Cause::truncated, "a schema", begin, 0},
+           {channel.substr(0, 20), Cause::truncated, "a channel", begin, 0},
+           {chunk(frame).substr(0, 20), Cause::truncated, "a chunk", begin, 0},
+           {record(9, std::string(100, 'x')).substr(0, 50), Cause::truncated, "a record of kind 9", begin, 0},
+           {huge + chunk(frame) + tail, Cause::too_long, "a record of kind 12 of 4294967296 bytes", begin, 1},
+           {chunk(frame, "", crc32(frame) ^ 1) + tail, Cause::checksum, "a chunk, which is read unchecked",
+            begin, 1},
+           {chunk(backwards, "lz4") + frame + tail, Cause::compressed, "a chunk in lz4; zstd is read", begin,
+            1},
+           {chunk(backwards, "zstd", 1, 1000) + tail, Cause::compressed,
+            "a chunk, " + std::to_string(frame.size()) + " of 1000 bytes", begin, 1},
+           {chunk(backwards, "zstd", 0, Input::longest + 1) + frame + tail, Cause::too_long,
+            "a chunk of 16777217 bytes", begin, 1},
+           {record(6, std::string(39, '\0')) + frame + tail, Cause::syntax, "the head of a chunk", begin, 1},
+           {longer + tail, Cause::length, "records beyond their chunk", begin, 1},
+           {chunk(odd) + tail, Cause::syntax, "a record beyond its chunk", in_chunk + frame.size(), 1},
+           {chunk(frame + chunk(frame)) + tail, Cause::syntax, "a chunk within a chunk",
+            in_chunk + frame.size(), 1},
+           {chunk(odd_backwards, "zstd") + tail, Cause::syntax, "a record beyond its chunk", begin, 1},
+           {message("{}", 8) + frame + tail, Cause::syntax,
+            "a message of channel 8, of which nothing is said", begin, 1},
+       }) {
+    CAPTURE(each.detail);
+    const auto log = read_mcap(before + each.behind);
+    CHECK(log.entries.size() == each.entries);
+    REQUIRE(log.complained == 1);
+    CHECK(log.complaints[0].cause == each.cause);
+    CHECK(log.complaints[0].detail == each.detail);
+    CHECK(log.complaints[0].place == Place{each.place});
+  }
+}
+
+TEST_CASE("mcap: behind damage, a chunk is found that is packed, and none in a way that has no such name") {
+  const std::string damage(20, '\0'), backwards{frame.rbegin(), frame.rend()};
+  CHECK(cause_of(head + said + damage + chunk(backwards, "zstd") + tail, 1) == Cause::syntax);
+  CHECK(cause_of(head + said + damage + chunk(frame, "brotl") + chunk(frame) + tail, 1) == Cause::syntax);
+}
+
+TEST_CASE("mcap: a packed chunk has the room that it says, whatever those before it had") {
+  std::string many;
+  while (many.size() < std::size_t{1} << 20) many += frame;
+  const std::string few{frame.rbegin(), frame.rend()}, backwards{many.rbegin(), many.rend()};
+  const auto log = read_mcap(head + said + chunk(few, "zstd") + chunk(backwards, "zstd", crc32(many)) +
+                             chunk(few, "zstd") + tail);
+  CHECK(log.complained == 0);
+  CHECK(log.entries.size() == many.size() / frame.size() + 2);
+  // As much as may be said, and one byte more.
+  const std::string whole = head + said, end = frame + tail;
+  CHECK(cause_of(whole + chunk(few, "zstd", 0, Input::longest) + end, 2) == Cause::compressed);
+  CHECK(cause_of(whole + chunk(few, "zstd", 0, Input::longest + 1) + end, 1) == Cause::too_long);
+}
+
 TEST_CASE("mcap: chunks that are packed") {
   const std::string backwards{frame.rbegin(), frame.rend()};
   const auto log = read_mcap(head + said + chunk(backwards, "zstd", crc32(frame)) + frame + tail);
@@ -191,6 +309,7 @@ TEST_CASE("mcap: chunks that are packed") {
   const auto without = read_all<McapReader>(head + said + chunk(backwards, "zstd") + frame + tail);
   REQUIRE(without.complained == 1);
   CHECK(without.complaints[0].cause == Cause::compressed);
+  CHECK(without.complaints[0].detail == "a chunk in zstd");
 }
 
 TEST_CASE("mcap: what was recorded is believed of channels of frames only") {
@@ -207,6 +326,10 @@ TEST_CASE("mcap: what was recorded is believed of channels of frames only") {
   REQUIRE(log.recorded.size() == 1);
   CHECK(log.recorded[0].received == 10);
   CHECK(log.recorded[0].dropped == 12);
+  // What names no channel is of none, of the first one neither.
+  const std::string first = record(4, bytes("0100 0700") + string("/can0/raw") + string("json") + string(""));
+  const std::string of_none = record(12, string("ocm.recorded") + string(string("received") + string("5")));
+  CHECK(read_mcap(head + said + first + frame + of_none + tail).recorded.empty());
 }
 
 TEST_CASE("mcap: a wrong checksum is reported, and the chunk is read") {
@@ -221,6 +344,7 @@ TEST_CASE("mcap: messages that are no frames") {
     CHECK(cause_of(with(message("{}")), 1) == Cause::identifier);
     CHECK(cause_of(with(message("x")), 1) == Cause::syntax);
     CHECK(cause_of(with(message(frame, 8)), 1) == Cause::syntax);  // of a channel without a description
+    CHECK(cause_of(with(message("{}", 10)), 1) == Cause::syntax);  // just behind the last
     CHECK(cause_of(with(message(frame, 0xFFFF)), 1) == Cause::syntax);
     CHECK(cause_of(with(record(5, "x")), 1) == Cause::length);
     // The last time that there is, with nothing in it, and the first that there is not.
@@ -236,6 +360,7 @@ TEST_CASE("mcap: messages that are no frames") {
   CHECK(cause_of(head + said + chunk(chunk(frame) + frame) + tail, 1) ==
         Cause::syntax);  // a chunk in a chunk
   CHECK(cause_of(head + said + chunk(frame + "\5") + frame + tail, 2) == Cause::syntax);
+  CHECK(cause_of(head + said + chunk(frame + record(5, "")) + frame + tail, 2) == Cause::length);
   CHECK(cause_of(head + said + record(6, std::string(39, '\0')) + frame + tail, 1) == Cause::syntax);
 }
 
@@ -248,6 +373,8 @@ TEST_CASE("mcap: other people's channels are skipped, and reported if there are 
   CHECK(both.complained == 0);
   CHECK(both.entries.size() == 2);
   CHECK(cause_of(head + theirs + word + word + tail, 0) == Cause::unsupported);
+  CHECK(read_mcap(head + theirs + word + word + tail).complaints.at(0).detail ==
+        "2 messages, none on a channel of CAN frames");
   CHECK(read_mcap(head + theirs + tail).complained == 0);
   // Our schema in another encoding is not ours.
   const std::string cbor = record(4, bytes("0900 0700") + string("/can3/raw") + string("cbor") + string(""));
@@ -270,6 +397,21 @@ TEST_CASE("mcap: a channel that is described again stays the same; two of one na
   CHECK(log.entries[1].interface == 0);
   CHECK(log.entries[2].interface == 1);
   CHECK(log.names[2] == "can3");
+}
+
+TEST_CASE("mcap: a channel that is described by another name is of another interface from there on") {
+  const std::string renamed =
+      record(4, bytes("0900 0700") + string("/can4/raw") + string("json") + string(""));
+  const auto log = read_mcap(head + said + frame + renamed + frame + tail);
+  CHECK(log.complained == 0);
+  CHECK(log.names == std::vector<std::string>{"can3", "can4"});
+}
+
+TEST_CASE("mcap: schemas may have numbers that follow each other") {
+  const std::string next = record(3, bytes("0800") + string("theirs") + string("x") + string(""));
+  const auto log = read_mcap(head + schema + next + channel + frame + tail);
+  CHECK(log.complained == 0);
+  CHECK(log.entries.size() == 1);
 }
 
 TEST_CASE("mcap: lengths that cannot be are said, and reading goes on at the next chunk") {

@@ -98,6 +98,30 @@ TEST_CASE("mcap_container: without a message") {
   CHECK(records[2].kind == mcap::opcode::statistics);
   CHECK(records[3].kind == mcap::opcode::summary_offset);
   CHECK(records[4].kind == mcap::opcode::footer);
+  // No message, schema, channel, attachment, metadata and chunk, from 0 to 0.
+  CHECK(records[2].content == std::string(46, '\0'));
+}
+
+static_assert(mcap::Container::chunk_size == 262'144 && mcap::Container::chunk_duration_ns == 1'000'000'000);
+static_assert(mcap::Container::most_index == 67'108'864);
+
+TEST_CASE("mcap_container: a message says its time twice, whatever stood in its place before") {
+  mcap::Container container;
+  Bytes out;
+  container.begin(out, "x");
+  const std::uint16_t channel = container.add_channel(out, container.add_schema(out, "S", "{}"), "/c", {});
+  for (const std::uint64_t time : {UINT64_MAX, std::uint64_t{5}}) {
+    put(container, out, channel, time, "{}");
+    container.close_chunk(out);
+  }
+  container.finish(out);
+  const auto chunks = of_kind(records_of(out.view()), mcap::opcode::chunk);
+  REQUIRE(chunks.size() == 2);
+  for (const Record& chunk : chunks) {
+    const std::uint64_t time = &chunk == &chunks[0] ? UINT64_MAX : 5;
+    CHECK(base::swar::load64(chunk.content.data() + 40 + 15) == time);
+    CHECK(base::swar::load64(chunk.content.data() + 40 + 23) == time);
+  }
 }
 
 TEST_CASE("mcap_container: a chunk is closed by its size, by a second either way, and when asked") {

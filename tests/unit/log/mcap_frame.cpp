@@ -116,6 +116,7 @@ TEST_CASE("mcap_frame: as other programs write it") {
       wanted);
   CHECK(entry_of(R"({"id":1544,"fd":false,"brs":false,"raw_dlc":0,"length":0,"data":"00D2000F"})") == wanted);
   CHECK(entry_of(R"({"id":5})").length == 0);
+  CHECK(entry_of(R"({"id":5,"data":"0011","data":"22"})").length == 1);  // the last one counts
   const std::string long_one(128, 'A');
   CHECK(entry_of(R"({"id":5,"fd":true,"data":")" + long_one + R"("})").length == 64);
 }
@@ -145,6 +146,9 @@ TEST_CASE("mcap_frame: what cannot be") {
                            R"({"id":5,"error":true,"fd":true})",
                            R"({"id":5,"remote":true,"fd":true})",
                            R"({"id":5,"error":true,"remote":true})",
+                           R"({"id" 5})",
+                           R"({:5,"id":5})",
+                           R"({"id":5,"time_ns":"-5")",
                            R"({"id":5,"x":]})",
                            R"({"id":5,"x":"\)",
                            R"({"x)"}) {
@@ -162,7 +166,8 @@ TEST_CASE("mcap_frame: what cannot be") {
         R"({"id":5,"fd":true,"data":")" + many + R"("})",
         std::string{R"({"id":5,"remote":true,"data":"00"})"},
         std::string{R"({"id":5,"remote":true,"length":9})"}, std::string{R"({"id":5,"length":4})"},
-        std::string{R"({"id":5,"raw_dlc":9})"},
+        std::string{R"({"id":5,"raw_dlc":1})"}, std::string{R"({"id":5,"raw_dlc":9})"},
+        std::string{R"({"id":5,"raw_dlc":9,"fd":true,"data":"0000000000000000"})"},
         std::string{R"({"id":5,"raw_dlc":8,"data":"0000000000000000"})"},
         std::string{R"({"id":5,"raw_dlc":16,"data":"0000000000000000"})"},
         std::string{R"({"id":5,"raw_dlc":9,"error":true,"data":"0000000000000000"})"}}) {
@@ -170,7 +175,7 @@ TEST_CASE("mcap_frame: what cannot be") {
     CHECK(cause_of(text) == Cause::length);
   }
   for (const char* text : {R"({"id":5,"time_ns":5})", R"({"id":5,"time_ns":""})", R"({"id":5,"time_ns":"-"})",
-                           R"({"id":5,"time_ns":"9223372036854775808"})"}) {
+                           R"({"id":5,"time_ns":"-5x"})", R"({"id":5,"time_ns":"9223372036854775808"})"}) {
     INFO(text);
     CHECK(cause_of(text) == Cause::time);
   }

@@ -32,7 +32,7 @@ TEST_CASE("packet: a classic frame is identifier, length and eight bytes") {
 
 TEST_CASE("packet: what is stored of each kind of frame, byte by byte, and read again") {
   const auto stored = [](const Entry& entry) {
-    char bytes[packet::fd_size];
+    char bytes[2 * packet::fd_size];
     std::fill_n(bytes, sizeof bytes, '\xEE');
     packet::store(bytes, entry);
     const std::size_t size = packet::size_of(entry);
@@ -102,6 +102,33 @@ TEST_CASE("packet: bytes beyond the length are zero") {
   CHECK(load("40000123 03000000 1122334455667788").entry.data[0] == 0);
 }
 
+TEST_CASE("packet: nothing of the frame that the entry held before stays") {
+  for (const char* const hex : {"00000123 03040000 010203", "40000123 03000000 1122334455667788",
+                                "00000123 03000000 112233", "00000123 03000000 1122334455667788"}) {
+    Entry entry{{}, {0x1F334455, 8, {}, can::Format::extended}};
+    entry.data.fill(0xAA);
+    entry.flags = flag::all;
+    entry.raw_dlc = 9;
+    REQUIRE_FALSE(packet::load(bytes(hex), LinkType::can_socketcan, false, entry));
+    CAPTURE(hex);
+    CHECK(log::testing::can_exist(entry));
+    CHECK(entry.length == 3);
+    CHECK(entry.raw_dlc == 0);
+    CHECK(entry.is_fd() == (hex[12] == '4'));
+  }
+}
+
+TEST_CASE("packet: a frame without data may end with its head") {
+  const Loaded loaded = load("00000123 00000000");
+  REQUIRE_FALSE(loaded.wrong);
+  CHECK(loaded.entry == Entry{{}, {0x123, 0, {}}});
+  const Loaded cooked =
+      load("0004 0118 0000 0000000000000000 000C 23010000 00000000", LinkType::linux_cooked);
+  REQUIRE_FALSE(cooked.wrong);
+  CHECK(cooked.entry.id == 0x123);
+  CHECK(cooked.entry.length == 0);
+}
+
 TEST_CASE("packet: what cannot be a frame") {
   CHECK(load("00000123 030000").wrong == Cause::length);
   CHECK(load("00000123 03000000 1122").wrong == Cause::length);
@@ -137,6 +164,8 @@ TEST_CASE("packet: cooked captures have a direction and the recorder's byte orde
         Cause::unsupported);  // Ethernet
   CHECK(load("0004 0118 0000 0000000000000000 0800" + little, LinkType::linux_cooked).wrong ==
         Cause::unsupported);
+  CHECK(load("0004 0001 0000 0000000000000000 000C", LinkType::linux_cooked).wrong ==
+        Cause::unsupported);  // Ethernet, of which nothing else is needed
   CHECK(load("0004" + head, LinkType::linux_cooked).wrong == Cause::length);
   CHECK(load("0004 0118", LinkType::linux_cooked).wrong == Cause::length);
 }

@@ -79,14 +79,15 @@ TEST_CASE("pcap: times that 32 bits of seconds do not hold are counted") {
   Interfaces interfaces;
   interfaces.add("can0");
   PcapWriter writer;
-  const std::vector<Entry> entries{Entry{at(-1), {1, 0, {}}},
-                                   Entry{at(4'294'967'296'000'000'000), {1, 0, {}}},
-                                   Entry{at(4'294'967'295'999'999'999), {1, 0, {}}}};
+  const std::vector<Entry> entries{
+      Entry{at(-1), {1, 0, {}}}, Entry{at(4'294'967'296'000'000'000), {1, 0, {}}},
+      Entry{at(4'294'967'295'999'999'999), {1, 0, {}}}, Entry{at(0), {1, 0, {}}}};
   const auto log = read_all<PcapReader>(log::testing::write_all(writer, entries, interfaces));
   CHECK(writer.lost().count(Lost::time) == 2);
   CHECK(log.entries.at(0).time == at(0));
   CHECK(log.entries.at(1).time == at(4'294'967'295'999'999'999));
   CHECK(log.entries.at(2).time == at(4'294'967'295'999'999'999));
+  CHECK(log.entries.at(3).time == at(0));
 }
 
 TEST_CASE("pcap: a capture of all devices") {
@@ -102,6 +103,45 @@ TEST_CASE("pcap: a capture of all devices") {
   CHECK(log.names == std::vector<std::string>{"if3", "if4", "if3"});
   CHECK(log.entries.at(0).id == 0x123);
   CHECK(log.entries.at(0).direction == Direction::sent);
+}
+
+TEST_CASE("pcap: more interfaces than any log has are refused, not mixed up") {
+  std::string file = bytes("D4C3B2A1 0200 0400 00000000 00000000 00000400 14010000");
+  std::string record = bytes(
+      "01000000 02000000 24000000 24000000 000C 0000 00000000 0118 04 00"
+      "0000000000000000 23010000 02000000 1122000000000000");
+  for (std::size_t i = 0; i <= Interfaces::most; ++i) {
+    record[22] = static_cast<char>(i >> 8);
+    record[23] = static_cast<char>(i & 0xFF);
+    file += record;
+  }
+  const auto log = read_all<PcapReader>(file);
+  CHECK(log.entries.size() == Interfaces::most);
+  REQUIRE(log.complained == 1);
+  CHECK(log.complaints[0].cause == Cause::unsupported);
+  CHECK(log.complaints[0].place.number == file.size() - record.size());
+}
+
+TEST_CASE("pcap: a live pipe hands on what is there, and nothing of the entries before") {
+  const std::string first = little_us + little_record + little_record;
+  const std::string file = first + little_record;
+  for (const std::size_t beyond : {0U, 5U, 20U}) {  // a bit of the next record
+    test::Drops source{file, first.size() + beyond};
+    Input input{source};
+    PcapReader reader{input};
+    std::vector<Entry> some(8);
+    for (Entry& entry : some) {
+      entry.direction = Direction::sent;
+      entry.interface = 7;
+    }
+    CHECK(reader.read(some) == 2);
+    CHECK(source.reads == 1);
+    CHECK(some[1].direction == Direction::unknown);
+    CHECK(some[1].interface == 0);
+    CHECK(reader.read(some) == 1);
+    CHECK(reader.read(some) == 0);
+    CHECK(reader.complaints().total() == 0);
+  }
 }
 
 TEST_CASE("pcap: what cannot be a frame is reported, and the rest read") {
@@ -202,6 +242,7 @@ TEST_CASE("pcap: the longest record that is read, and one that is longer") {
 TEST_CASE("pcap: what it is not") {
   CHECK_FALSE(PcapReader::recognises(""));
   CHECK_FALSE(PcapReader::recognises(little_us.substr(0, 23)));
+  CHECK(PcapReader::recognises(little_us));  // of a log without frames
   CHECK_FALSE(PcapReader::recognises(std::string(24, 'x')));
   const auto log = read_all<PcapReader>(std::string(24, 'x') + little_record);
   CHECK(log.entries.empty());

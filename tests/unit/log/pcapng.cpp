@@ -108,8 +108,10 @@ TEST_CASE("pcapng: entries at random survive, whatever the pieces they come in")
       const auto log = log::testing::read_from<PcapngReader>(source, batch_size);
       REQUIRE(log.complained == 0);
       REQUIRE(log.entries == entries);
-      for (std::size_t i = 0; i < entries.size(); ++i)
+      for (std::size_t i = 0; i < entries.size(); ++i) {
         REQUIRE(log.names[i] == interfaces.name(entries[i].interface));
+        REQUIRE(log::testing::can_exist(log.entries[i]));
+      }
     }
 }
 
@@ -124,6 +126,13 @@ TEST_CASE("pcapng: every resolution and offset of time") {
   CHECK(time_read("0900 0100 9E 000000", 0, 0x6000'0000) == 1'500'000'000);  // 2^-30
   CHECK(time_read("0900 0100 BF 000000", 0xC000'0000, 0) == 1'500'000'000);  // 2^-63
   CHECK(time_read("0900 0100 FF 000000", 0xFFFF'FFFF, 0xFFFF'FFFF) == 0);    // 2^-127
+  CHECK(time_read("0900 0100 C0 000000", 0x8000'0000, 0) == 500'000'000);    // 2^-64
+  CHECK(time_read("0900 0100 E0 000000", 0xFFFF'FFFF, 0xFFFF'FFFF) == 0);    // 2^-96
+  // Options of another kind, and of another length.
+  CHECK(time_read("0200 0100 61000000", 0, 1'500'000) == 1'500'000'000);
+  CHECK(time_read("0200 0800 6162636465666768", 0, 1'500'000) == 1'500'000'000);
+  CHECK(time_read("0900 0400 09000000", 0, 1'500'000) == 1'500'000'000);
+  CHECK(time_read("0E00 0400 01000000", 0, 1'500'000) == 1'500'000'000);
   CHECK(time_read("0900 0100 09 000000 0E00 0800 E803000000000000", 0, 5) == 1'000'000'000'005);
   CHECK(time_read("0900 0100 09 000000 0E00 0800 FFFFFFFFFFFFFFFF", 0, 1'000'000'001) == 1);
   CHECK(time_read("0900 0100 09 000000 0E00 0800 FEFFFFFFFFFFFFFF", 0, 5) == -1'999'999'995);  // before 1970
@@ -172,6 +181,7 @@ TEST_CASE("pcapng: options in any company say the direction") {
   CHECK(with("0000 0000 0200 0400 02000000") == Direction::unknown);           // behind the end
   CHECK(with("0100 FF00 58000000 0200 0400 02000000") == Direction::unknown);  // longer than the block
   CHECK(with("0300 0400 02000000 0000 0000") == Direction::unknown);           // epb_hash
+  CHECK(with("0200 0200 02000000 0000 0000") == Direction::unknown);           // of two bytes
 }
 
 TEST_CASE("pcapng: packets of the older kind") {
@@ -198,6 +208,31 @@ TEST_CASE("pcapng: an interface without a name has one") {
   CHECK(log.names.at(0) == "can0");
 }
 
+TEST_CASE("pcapng: a name ends at a zero, and at what an option holds") {
+  const auto log =
+      read_all<PcapngReader>(little_section + interface_with("0200 0800 63616E37 00616263") + little_packet);
+  CHECK(log.names.at(0) == "can7");
+  Interfaces interfaces;
+  interfaces.add(std::string(70'000, 'n'));
+  PcapngWriter writer;
+  const std::vector<Entry> entries{Entry{at(1), {1, 0, {}}}};
+  const auto cut = read_all<PcapngReader>(log::testing::write_all(writer, entries, interfaces));
+  CHECK(cut.complained == 0);
+  REQUIRE(cut.entries == entries);
+  CHECK(cut.names[0] == std::string(65'535, 'n'));
+}
+
+TEST_CASE("pcapng: more interfaces than any log has are refused within a section, too") {
+  std::string file = little_section;
+  for (std::size_t i = 0; i <= Interfaces::most; ++i) file += little_can7;
+  const auto log = read_all<PcapngReader>(file + little_packet);
+  CHECK(log.entries.size() == 1);
+  REQUIRE(log.complained == 1);
+  CHECK(log.complaints[0].cause == Cause::unsupported);
+  CHECK(log.complaints[0].detail == "more interfaces than any log has");
+  CHECK(log.complaints[0].place.number == file.size() - little_can7.size());
+}
+
 TEST_CASE("pcapng: more interfaces than any log has are refused, not mixed up") {
   std::string file;
   for (int i = 0; i <= 4096; ++i) {  // a section each
@@ -214,6 +249,7 @@ TEST_CASE("pcapng: more interfaces than any log has are refused, not mixed up") 
   REQUIRE(log.complaints.size() == 2);
   CHECK(log.complaints[0].detail == "more interfaces than any log has");
   CHECK(log.complaints[1].cause == Cause::unsupported);
+  CHECK(log.complaints[1].detail == "link type 0");
 }
 
 TEST_CASE("pcapng: statistics count from the section's beginning, the last tell") {
@@ -443,6 +479,7 @@ TEST_CASE("pcapng: a time before 1970 is counted as lost") {
 TEST_CASE("pcapng: what it is not") {
   CHECK_FALSE(PcapngReader::recognises(""));
   CHECK_FALSE(PcapngReader::recognises(little_section.substr(0, 11)));
+  CHECK(PcapngReader::recognises(little_section.substr(0, 12)));
   CHECK_FALSE(PcapngReader::recognises("0A0D0D0A 1C000000 1A2B"));
   CHECK_FALSE(PcapngReader::recognises(bytes("0A0D0D0A 1C000000 4D3C2B1B")));
   const auto log = read_all<PcapngReader>("this is no pcapng file at all, but some text");

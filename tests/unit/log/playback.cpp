@@ -25,6 +25,13 @@ TEST_CASE("frames are played at their distances from the first") {
   CHECK(playback.backward() == 0);
 }
 
+TEST_CASE("at its own speed a log is exact to the nanosecond however long it is") {
+  Playback playback;
+  playback.begin(at(0s), at(0s));
+  const base::Duration beyond_a_double{(std::int64_t{1} << 53) + 1};  // 104 days
+  CHECK(playback.due(at(beyond_a_double)) == at(beyond_a_double));
+}
+
 TEST_CASE("an hour of playback ends to the nanosecond where it should") {
   // 900 us, the shortest period of the thesis, and a player that is always a little late.
   for (const double speed : {1.0, 3.0, 0.7}) {
