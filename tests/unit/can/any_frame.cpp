@@ -32,6 +32,11 @@ static_assert(fd(1, 12).view().fd && fd(1, 12).view().bytes.size() == 12 && fd(1
 static_assert(can::fd_length(9) == 12 && can::fd_length(10) == 16 && can::fd_length(11) == 20 &&
               can::fd_length(12) == 24 && can::fd_length(13) == 32 && can::fd_length(14) == 48 &&
               can::fd_length(15) == 64);
+static_assert(can::fd_length(0) == 0 && can::fd_length(8) == 8 && can::fd_length(16) == 64 &&
+              can::fd_length(255) == 64);
+static_assert(can::fd_dlc(0) == 0 && can::fd_dlc(8) == 8 && can::fd_dlc(9) == 9 && can::fd_dlc(12) == 9 &&
+              can::fd_dlc(13) == 10 && can::fd_dlc(48) == 14 && can::fd_dlc(49) == 15 &&
+              can::fd_dlc(64) == 15 && can::fd_dlc(65) == 15);
 
 TEST_CASE("what a CAN FD frame is marked with, at one bit rate and at two") {
   STATIC_REQUIRE(ocm::can::fd_flags(false) == 4);  // [linux/can.h, CANFD_FDF]

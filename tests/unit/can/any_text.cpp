@@ -49,6 +49,8 @@ TEST_CASE("text that is no frame of either kind") {
   CHECK(refused("123##0112233445566778899") == Error::bad_length);  // 9 bytes
   CHECK(refused("123##0" + std::string(130, 'A')) == Error::bad_length);
   CHECK(refused("123#112233445566778899") == Error::bad_length);
+  CHECK(refused("123##1.DEAD") == Error::bad_syntax);
+  CHECK(refused("123##1DE..AD") == Error::bad_syntax);
   // Kept as can-utils keep it, and no frame for a bus.
   CHECK(parse_any_frame("123##8").ok());
   CHECK(can::validate(*parse_any_frame("123##8")).error == Error::bad_syntax);

@@ -41,6 +41,9 @@ constexpr bool same_segments(BitTiming a, BitTiming b) {
 }
 static_assert(same_segments(*find_bit_timing(f1_pclk_hz, 500'000, 833), f1));
 static_assert(same_segments(*find_bit_timing(f4_pclk_hz, 500'000, 810), f4));
+// It jumps as far as the register has it, but never beyond segment 2.
+static_assert(find_bit_timing(f1_pclk_hz, 500'000, 833)->sjw == 2);
+static_assert(find_bit_timing(f4_pclk_hz, 500'000, 810)->sjw == 3);
 
 // The thesis's equation, 8 MHz / ((13 + 2 + 1) * 1) = 500 kHz, takes the crystal for APB1's clock and the
 // register's fields for the values themselves. With the fields of a register the crystal gives another rate,
@@ -106,6 +109,9 @@ TEST_CASE("a rate that no fields give exactly is refused") {
   // 42 MHz gives no 800 kbit/s.
   STATIC_REQUIRE(find_bit_timing(42'000'000, 800'000).error == Error::out_of_range);
   STATIC_REQUIRE(find_bit_timing(42'000'000, 500'000).ok());
+  // The slowest clock of the quanta is a 1024th.
+  STATIC_REQUIRE(*find_bit_timing(25'600'000, 1000) == BitTiming{1023, 15, 7, 3});
+  STATIC_REQUIRE(find_bit_timing(25'625'000, 1000).error == Error::out_of_range);
 }
 
 TEST_CASE("fields that the register does not have are not valid") {

@@ -49,6 +49,20 @@ static_assert(can::detail::error_location(CAN_ERR_PROT_LOC_ACK_DEL) == "the ackn
 static_assert(can::detail::error_location(CAN_ERR_PROT_LOC_ID12_05) == "the identifier");
 static_assert(can::detail::error_location(CAN_ERR_PROT_LOC_EOF) == "the end of frame");
 static_assert(can::detail::error_location(CAN_ERR_PROT_LOC_INTERM) == "the intermission");
+static_assert(can::detail::error_location(CAN_ERR_PROT_LOC_SOF) == "the start of frame");
+static_assert(can::detail::error_location(CAN_ERR_PROT_LOC_ID28_21) == "the identifier" &&
+              can::detail::error_location(CAN_ERR_PROT_LOC_ID20_18) == "the identifier" &&
+              can::detail::error_location(CAN_ERR_PROT_LOC_ID17_13) == "the identifier" &&
+              can::detail::error_location(CAN_ERR_PROT_LOC_ID04_00) == "the identifier");
+static_assert(can::detail::error_location(CAN_ERR_PROT_LOC_SRTR) == "the SRR bit");
+static_assert(can::detail::error_location(CAN_ERR_PROT_LOC_IDE) == "the IDE bit");
+static_assert(can::detail::error_location(CAN_ERR_PROT_LOC_RTR) == "the RTR bit");
+static_assert(can::detail::error_location(CAN_ERR_PROT_LOC_RES1) == "a reserved bit" &&
+              can::detail::error_location(CAN_ERR_PROT_LOC_RES0) == "a reserved bit");
+static_assert(can::detail::error_location(CAN_ERR_PROT_LOC_DLC) == "the data length code");
+static_assert(can::detail::error_location(CAN_ERR_PROT_LOC_DATA) == "the data");
+static_assert(can::detail::error_location(CAN_ERR_PROT_LOC_CRC_DEL) == "the CRC delimiter");
+static_assert(can::detail::error_location(0x01).empty() && can::detail::error_location(0x1C).empty());
 
 static_assert(words("20000040#0000000000000000") == "bus-off: the controller has left the bus");
 static_assert(words("20000240#000000000000FF00") ==
@@ -63,6 +77,10 @@ static_assert(words("20000204#003000000000C8C8") ==
               "error passive (both ways), error counters: sending 200, receiving 200");
 static_assert(words("20000004#0040000000000000") == "error active again");
 static_assert(words("20000004#0000000000000000") == "controller problem");
+static_assert(words("20000004#0080000000000000") == "controller problem");
+static_assert(words("20000004#0002000000000000") == "the controller's transmit buffer overflowed");
+static_assert(words("20000004#0004000000000060") ==
+              "error warning (receiving), error counters: sending 0, receiving 96");
 static_assert(words("200000A0#0000001900000000") == "no acknowledgement: no other node, or another bit rate");
 static_assert(words("200000A8#0000001900000000") == "no acknowledgement: no other node, or another bit rate");
 static_assert(words("200000A8#0000041900000000") ==
@@ -71,10 +89,22 @@ static_assert(words("20000088#0000000800000000") == "protocol error in the CRC")
 static_assert(words("20000088#0000040000000000") == "stuff error");
 static_assert(words("20000088#0000810A00000000") == "bit error in the data while sending");
 static_assert(words("20000008#0000060000000000") == "form error, stuff error");
+static_assert(words("20000008#0000080000000000") == "dominant bit could not be sent");
+static_assert(words("20000008#0000100000000000") == "recessive bit could not be sent");
+static_assert(words("20000008#0000200000000000") == "overload");
+static_assert(words("20000008#0000400000000000") == "active error flag");
 static_assert(words("20000080#0000000000000000") == "bus error");
 static_assert(words("20000002#0B00000000000000") == "arbitration lost in bit 11");
 static_assert(words("20000002#0000000000000000") == "arbitration lost");
+static_assert(words("20000002#0100000000000000") == "arbitration lost in bit 1");
 static_assert(words("20000010#0000000045000000") == "CANH is shorted to the battery, CANL is not connected");
+static_assert(words("20000010#0000000005000000") == "CANH is shorted to the battery");
+static_assert(words("20000010#0000000050000000") == "CANL is shorted to the battery");
+static_assert(words("20000010#0000000067000000") ==
+              "CANH is shorted to ground, CANL is shorted to the supply");
+static_assert(words("20000010#0000000081000000") == "CANH is in an unknown state, CANL is shorted to CANH");
+static_assert(words("20000010#0000000010000000") == "CANL is in an unknown state");
+static_assert(words("20000010#0000000000000000") == "transceiver problem");
 static_assert(words("20000001#0000000000000000") == "the driver gave up sending: timeout");
 static_assert(words("20000400#0000000000000000") == "unknown error class 0x00000400");
 static_assert(words("20000000#0000000000000000") == "error frame without a class");
@@ -102,6 +132,8 @@ static_assert(!state("20000004#0001000000000000"), "an overflow says nothing of 
 static_assert(!state("20000088#0000040000000000") && !state("20000200#0000000000000102"));
 static_assert(!state("00000040#00") && !state("205#01"));
 static_assert(can::name(State::passive) == "error passive");
+static_assert(can::name(State::active) == "error active" && can::name(State::warning) == "error warning" &&
+              can::name(State::bus_off) == "bus-off");
 
 static_assert(can::error_counters(*can::parse_frame("20000200#0000000000000102")) ==
               can::ErrorCounters{1, 2});

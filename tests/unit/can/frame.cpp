@@ -50,6 +50,29 @@ TEST_CASE("frames are equal when everything is") {
   CHECK_FALSE(frame == Frame{0x205, 4, {1, 0x84, 3, 2}, Format::extended});
 }
 
+TEST_CASE("data frames with the identifier of another have its format, but are not remote") {
+  using ocm::can::data_format;
+  STATIC_REQUIRE(data_format(Format::base) == Format::base);
+  STATIC_REQUIRE(data_format(Format::base_remote) == Format::base);
+  STATIC_REQUIRE(data_format(Format::extended) == Format::extended);
+  STATIC_REQUIRE(data_format(Format::extended_remote) == Format::extended);
+  STATIC_REQUIRE(data_format(Format::error) == Format::error);
+}
+
+TEST_CASE("a view of a frame has what that has, and is none of CAN FD") {
+  using ocm::can::FrameView;
+  const Frame frame{0x1F33'4455, 3, {1, 2, 3}, Format::extended};
+  const FrameView view{frame};
+  CHECK(view.id == 0x1F33'4455);
+  CHECK(view.format == Format::extended);
+  CHECK_FALSE(view.fd);
+  CHECK(view.bytes.size() == 3);
+  CHECK(view.bytes.data() == frame.data.data());
+  CHECK(FrameView{Frame{0x605, 3, {}, Format::base_remote}}.bytes.empty());
+  CHECK(FrameView{}.id == 0);
+  CHECK_FALSE(FrameView{}.fd);
+}
+
 // --- arbitration against the wire ---
 
 /// The arbitration field as it is sent, '0' dominant. [ISO 11898-1, 6.4.2.3: base: identifier, RTR, then the

@@ -33,6 +33,16 @@ constexpr bool commands_are_the_vectors() {
 }
 static_assert(commands_are_the_vectors());
 
+// The highest number that each command has, and the first that it does not have.
+static_assert(slcan::parse_command("S8")->value == 8);
+static_assert(slcan::parse_command("S9").error == Error::bad_syntax);
+static_assert(slcan::parse_command("sFFFF")->value == 0xFFFF);
+static_assert(slcan::parse_command("Z1")->value == 1 && slcan::parse_command("X1")->value == 1);
+static_assert(slcan::parse_command("Z2").error == Error::bad_syntax);
+static_assert(slcan::parse_command("X2").error == Error::bad_syntax);
+static_assert(slcan::parse_command("MFFFFFFFF")->value == 0xFFFF'FFFF);
+static_assert(slcan::parse_command("mFFFFFFFF")->value == 0xFFFF'FFFF);
+
 /// A CAN controller with so many mailboxes free.
 struct Mailboxes {
   std::size_t room = 1000;
@@ -136,6 +146,13 @@ TEST_CASE("slcan adapter: a full bus is reported, and the flags stay until they 
   CHECK(bus.sent.back().id == 0x101);
 }
 
+TEST_CASE("slcan adapter: what happened before the channel was opened is not told") {
+  Adapter adapter;
+  Mailboxes bus;
+  bus.room = 0;
+  CHECK(tell(adapter, bus, "S6\rO\rt1000\rC\rO\rF\r") == "\r\r\a\r\rF00\r");
+}
+
 TEST_CASE("slcan adapter: frames go up when the channel is open, with the time when asked for") {
   Adapter adapter;
   Mailboxes bus;
@@ -178,12 +195,40 @@ TEST_CASE("slcan adapter: acceptance code and mask, as the SJA1000's two filters
   CHECK(heard({0x123, 1, {0x5A}}));
   CHECK(heard({0x123, 8, {0xFF}}));
   CHECK_FALSE(heard({0x124, 1, {0x5A}}));
+  CHECK_FALSE(heard({0x605, 1, {0x4A}}));
+  CHECK_FALSE(heard({0x605, 0, {}, Format::base_remote}));
+  CHECK_FALSE(heard({0x123, 0, {}, Format::base_remote}));
+  // ... or one that differs from it in bits 4 and 1 alone: the low nibbles of AM1 and AM3
+  filter("C0A5246A", "00010002");
+  for (const unsigned byte : {0x5AU, 0x4AU, 0x58U, 0x48U})
+    CHECK(heard({0x605, 1, {static_cast<std::uint8_t>(byte)}}));
+  for (const unsigned byte : {0x5BU, 0x52U, 0x7AU, 0xDAU})
+    CHECK_FALSE(heard({0x605, 1, {static_cast<std::uint8_t>(byte)}}));
+  // 0x300 to 0x3FF by one of the filters and 0x7FF by the other, whichever has which
+  for (const bool swapped : {false, true}) {
+    CAPTURE(swapped);
+    filter(swapped ? "FFE06000" : "6000FFE0", swapped ? "000F1FEF" : "1FEF000F");
+    CHECK(heard({0x300, 1, {7}}));
+    CHECK(heard({0x3FF, 0, {}}));
+    CHECK(heard({0x7FF, 1, {1}}));
+    CHECK_FALSE(heard({0x2FF, 0, {}}));
+    CHECK_FALSE(heard({0x400, 0, {}}));
+    CHECK_FALSE(heard({0x7FE, 1, {1}}));
+    CHECK_FALSE(heard({0x300, 0, {}, Format::base_remote}));
+    CHECK_FALSE(heard({0x7FF, 0, {}, Format::base_remote}));
+  }
   // ID.28 to ID.13 of extended frames: 0x1F334455 >> 13 = 0xF99A [SJA1000 data sheet, table 20]
   filter("F99A0000", "00000000");
   CHECK(heard({0x1F33'4455, 0, {}, Format::extended}));
   CHECK(heard({0x1F33'5FFF, 0, {}, Format::extended}));
   CHECK_FALSE(heard({0x1F33'6000, 0, {}, Format::extended}));
   CHECK(heard({0x0000'0455, 0, {}, Format::extended}));  // the second filter
+  // F990 to F99F by the first, 1204, 1214 to 12F4 by the second
+  filter("F99A1234", "000F00F0");
+  CHECK(heard({0xF995U << 13, 0, {}, Format::extended}));
+  CHECK(heard({0x12A4U << 13, 0, {}, Format::extended}));
+  CHECK_FALSE(heard({0xF985U << 13, 0, {}, Format::extended}));
+  CHECK_FALSE(heard({0x12A5U << 13, 0, {}, Format::extended}));
   filter("00000000", "FFFFFFFF");
   CHECK(heard({0x1F33'6000, 0, {}, Format::extended_remote}));
   CHECK(heard({0x7FF, 8, {1}}));
@@ -201,6 +246,16 @@ TEST_CASE("slcan adapter: garbage is refused line by line, and counted") {
   CHECK(adapter.faults().noise == 1);
   CHECK(adapter.faults().total() == 2);
   CHECK(bus.sent.size() == 1);
+}
+
+TEST_CASE("slcan adapter: no line has more than 30 characters") {
+  Adapter adapter;
+  Mailboxes bus;
+  CHECK(tell(adapter, bus, std::string(30, 't') + "\r") == "\a");
+  CHECK(adapter.faults().bad_syntax == 1);
+  CHECK(adapter.faults().too_long == 0);
+  CHECK(tell(adapter, bus, std::string(31, 't') + "\r") == "\a");
+  CHECK(adapter.faults().too_long == 1);
 }
 
 constexpr bool works_at_compile_time() {

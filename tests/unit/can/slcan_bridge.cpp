@@ -263,6 +263,59 @@ TEST_CASE("slcan bridge: a turn is bounded in both directions") {
   bench.check();
 }
 
+TEST_CASE("slcan bridge: there is more while the host talks on, and while frames wait") {
+  Bench<32> frames;
+  frames.open();
+  frames.line.size = 100'000;
+  for (int i = 0; i < 8; ++i) frames.hear(gyroscope);
+  CHECK(frames.step() == Turn::more);
+  CHECK(frames.bridge.counters().written == 4);
+  Bench<32> words;
+  words.open();
+  words.line.size = 100'000;
+  words.line.in += std::string(40, '\r');
+  const std::size_t at = words.line.at;
+  CHECK(words.step() == Turn::more);
+  CHECK(words.line.at - at == 31);  // the longest line, and its CR
+  CHECK(words.step() == Turn::done);
+  CHECK(words.line.at == words.line.in.size());
+}
+
+TEST_CASE("slcan bridge: an answer takes 8 characters of room, a frame those and 31") {
+  Bench bench;
+  bench.open();
+  bench.hear(gyroscope);
+  bench.line.waiting = bench.line.size - 38;
+  CHECK(bench.step() == Turn::done);
+  CHECK(bench.bridge.counters().written == 0);
+  bench.line.waiting = bench.line.size - 39;
+  CHECK(bench.step() == Turn::done);
+  CHECK(bench.bridge.counters().written == 1);
+  const std::size_t before = bench.line.out.size();
+  bench.line.in += "V\r";
+  bench.line.waiting = bench.line.size - 7;
+  CHECK(bench.step() == Turn::done);
+  CHECK(bench.line.at + 2 == bench.line.in.size());
+  bench.line.waiting = bench.line.size - 8;
+  CHECK(bench.step() == Turn::done);
+  CHECK(bench.line.out.substr(before) == "V1110\r");
+  bench.check();
+}
+
+TEST_CASE("slcan bridge: 64 frames wait unless told") {
+  Port port;
+  Bus bus{port};
+  Wire line;
+  slcan::Bridge<> bridge;
+  line.in = "S6\rO\r";
+  CHECK(bridge.turn(line, bus, port) == Turn::done);
+  for (int i = 0; i < 65; ++i) {
+    const auto guard = port.lock();
+    bridge.hear(gyroscope, at_ms(0));
+  }
+  CHECK(bridge.counters() == BridgeCounters{.heard = 65, .lost = 1});
+}
+
 TEST_CASE("slcan bridge: the bus's states stay in F, what happened is said once") {
   Bench bench;
   bench.bus.state = {.states = 0, .faults = 3, .lost = 2};  // before the host came

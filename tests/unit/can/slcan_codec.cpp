@@ -35,6 +35,9 @@ static_assert(slcan::encode({0x1FFF'FFFF, 8, {}, Format::extended}, 1)->view().s
 // [CAN232 manual, command S]
 static_assert(*slcan::bit_rate_code(10'000) == 0 && *slcan::bit_rate_code(125'000) == 4 &&
               *slcan::bit_rate_code(500'000) == 6 && *slcan::bit_rate_code(1'000'000) == 8);
+static_assert(*slcan::bit_rate_code(20'000) == 1 && *slcan::bit_rate_code(50'000) == 2 &&
+              *slcan::bit_rate_code(100'000) == 3 && *slcan::bit_rate_code(250'000) == 5 &&
+              *slcan::bit_rate_code(800'000) == 7);
 static_assert(slcan::bit_rate_code(83'333).error == Error::out_of_range);
 static_assert(slcan::nearest_bit_rate(83'333) == 100'000 && slcan::nearest_bit_rate(650'000) == 500'000 &&
               slcan::nearest_bit_rate(0) == 10'000 && slcan::nearest_bit_rate(UINT32_MAX) == 1'000'000);
@@ -43,5 +46,9 @@ static_assert(slcan::nearest_bit_rate(83'333) == 100'000 && slcan::nearest_bit_r
 static_assert(slcan::bit_rate_of_registers(0x03, 0x1C) == 125'000);
 static_assert(slcan::bit_rate_of_registers(0x00, 0x14) == 1'000'000);
 static_assert(slcan::bit_rate_of_registers(0x00, 0x1C) == 500'000);
+// 8 clocks a quantum, 20 quanta a bit; all bits set: 128 and 25, whatever SJW and SAM are
+static_assert(slcan::bit_rate_of_registers(0x03, 0x2F) == 100'000);
+static_assert(slcan::bit_rate_of_registers(0xFF, 0xFF) == 5'000);
+static_assert(slcan::bit_rate_of_registers(0x3F, 0x7F) == 5'000);
 
 }  // namespace can_slcan_codec_test

@@ -96,17 +96,57 @@ TEST_CASE("slcan: what is no line is counted by its cause") {
   CHECK(faults("t10021133E\r").bad_syntax == 1);
   CHECK(faults("t10021133EA60\r").bad_syntax == 1);  // 60000 ms: a minute ends before
   CHECK(faults("t100211330000F\r").bad_syntax == 1);
+  CHECK(faults("t10021133E0x0\r").bad_syntax == 1);
   CHECK(faults("t1\r").bad_syntax == 1);
   CHECK(faults("t10x0\r").bad_syntax == 1);
   CHECK(faults("t8000\r").bad_identifier == 1);
   CHECK(faults("T200000000\r").bad_identifier == 1);
   CHECK(faults("t1009112233445566778899\r").bad_length == 1);
   CHECK(faults("FA\r").bad_syntax == 1);
+  CHECK(faults("FA40\r").bad_syntax == 1);
+  CHECK(faults("Fx0\r").bad_syntax == 1);
   CHECK(faults("zz\r").bad_syntax == 1);
   CHECK(faults("e0\r").bad_syntax == 1);
   CHECK(faults("e2a\r").bad_syntax == 1);
   CHECK(faults("e1x\r").bad_syntax == 1);
   CHECK(faults("sx000000\r").bad_syntax == 1);
+  CHECK(faults("sa0x7033\r").bad_syntax == 1);
+  CHECK(faults("sa0570x3\r").bad_syntax == 1);
+  // The first and the last character that a line may have, and those beside them.
+  CHECK(faults(" \r").unknown == 1);
+  CHECK(faults("~\r").unknown == 1);
+  CHECK(faults("\x1F\r").noise == 1);
+  CHECK(faults("\x7F\r").noise == 1);
+}
+
+TEST_CASE("slcan: a version has at most 47 characters") {
+  slcan::AnswerReader reader;
+  const std::string longest(47, '1');
+  const auto all = read(reader, "V" + longest + "\r");
+  REQUIRE(all.size() == 1);
+  CHECK(all[0].kind == Answer::Kind::version);
+  CHECK(all[0].text == longest);
+  CHECK(read(reader, "V" + longest + "1\r").empty());
+  CHECK(reader.faults().too_long == 1);
+}
+
+TEST_CASE("slcan: a line has begun at its first character, also at one that spoils it, until it ends") {
+  slcan::AnswerReader reader;
+  CHECK_FALSE(reader.mid_line());
+  read(reader, "z");
+  CHECK(reader.mid_line());
+  read(reader, "\r");
+  CHECK_FALSE(reader.mid_line());
+  read(reader, "\n");
+  CHECK_FALSE(reader.mid_line());
+  read(reader, "\xFF");
+  CHECK(reader.mid_line());
+  read(reader, "\r");
+  CHECK_FALSE(reader.mid_line());
+  read(reader, "t1");
+  CHECK(reader.mid_line());
+  read(reader, "\a");
+  CHECK_FALSE(reader.mid_line());
 }
 
 TEST_CASE("slcan: every true beginning of a line is refused") {
@@ -138,6 +178,17 @@ TEST_CASE("slcan: reports of errors become the error frames that linux makes of 
   CHECK(frame("sa057033").data == Payload{0, 0x40, 0, 0, 0, 0, 33, 57});
   CHECK(frame("sw096012").data == Payload{0, controller_error::rx_warning, 0, 0, 0, 0, 12, 96});
   CHECK(frame("sp012130").data == Payload{0, controller_error::tx_passive, 0, 0, 0, 0, 130, 12});
+  CHECK(frame("sa057033").id == (error_class::controller | error_class::counters));
+  CHECK(frame("sw012096").data[1] == controller_error::tx_warning);
+  CHECK(frame("sp130012").data[1] == controller_error::rx_passive);
+  // Where both counters are equal, it is both sides.
+  CHECK(frame("sw096096").data[1] == (controller_error::tx_warning | controller_error::rx_warning));
+  CHECK(frame("sp130130").data[1] == (controller_error::tx_passive | controller_error::rx_passive));
+  CHECK(frame("sp256999").data == Payload{0, controller_error::tx_passive, 0, 0, 0, 0, 255, 255});
+  CHECK(frame("e1O") == Frame{error_class::controller | error_class::protocol | error_class::bus_error,
+                              8,
+                              {0, controller_error::tx_overflow},
+                              Format::error});
 }
 
 TEST_CASE("slcan: status flags become error frames, states once and events each time") {
@@ -152,6 +203,15 @@ TEST_CASE("slcan: status flags become error frames, states once and events each 
   for (int i = 0; i < 2; ++i)
     CHECK(lost_in_controller(slcan::to_error_frame(slcan::status::overrun, slcan::status::overrun)));
   CHECK(slcan::to_error_frame(slcan::status::bus_error, 0).id == error_class::bus_error);
+  CHECK(slcan::to_error_frame(slcan::status::transmit_queue_full, 0) ==
+        Frame{error_class::controller, 8, {0, controller_error::tx_overflow}, Format::error});
+  CHECK(slcan::to_error_frame(slcan::status::receive_queue_full, 0) ==
+        Frame{error_class::controller, 8, {0, controller_error::rx_overflow}, Format::error});
+  CHECK(slcan::to_error_frame(slcan::status::warning | slcan::status::bus_error, 0) ==
+        Frame{error_class::controller | error_class::bus_error,
+              8,
+              {0, controller_error::rx_warning | controller_error::tx_warning},
+              Format::error});
 }
 
 TEST_CASE("slcan: any frame comes back, with its time stamp") {

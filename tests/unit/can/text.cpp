@@ -211,6 +211,7 @@ TEST_CASE("a log line's fraction has 0 to 9 digits") {
   }
   STATIC_REQUIRE(parse_log_line("(12.000000001) can0 605#R")->time == at_ns(12'000'000'001));
   STATIC_REQUIRE(parse_log_line("(0000000012.1) can0 605#R")->time == at_ns(12'100'000'000));
+  STATIC_REQUIRE(parse_log_line("(1) can0 605#R")->time == at_ns(1'000'000'000));
   CHECK(parse_log_line("(12.1234567890) can0 605#R").error == Error::bad_syntax);
 }
 

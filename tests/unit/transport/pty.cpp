@@ -136,6 +136,8 @@ TEST_CASE("pty: the link is there while its owner lives, and one at a time") {
     CHECK(pty->name() == link);
     CHECK(std::filesystem::read_symlink(link) == pty->path());
     CHECK(transport::is_served(link));
+    using std::filesystem::perms;
+    CHECK(std::filesystem::status(link + ".lock").permissions() == (perms::owner_read | perms::owner_write));
     {
       const Program program{link};
       CHECK(pty->attached());
@@ -187,6 +189,8 @@ TEST_CASE("pty: lines of a user lie beside the virtual bus, in folders of the us
   CHECK_FALSE(transport::make_line_folders());
   CHECK_FALSE(transport::make_line_folders());
   CHECK(std::filesystem::is_directory(transport::robot_lines()));
+  for (const std::string& made : {folder.path + "/ocm", transport::robot_lines()})
+    CHECK(std::filesystem::status(made).permissions() == std::filesystem::perms::owner_all);
   std::filesystem::permissions(transport::robot_lines(), std::filesystem::perms::others_read,
                                std::filesystem::perm_options::add);
   const auto problem = transport::make_line_folders();
@@ -223,6 +227,7 @@ TEST_CASE("pty: each robot has a line of its own, whose name a file can have") {
   CHECK(transport::robot_of_line("100%") == "100%");
   CHECK(transport::robot_of_line("%2") == "%2");
   CHECK(transport::robot_of_line("%2f%ZZ") == "%2f%ZZ");
+  CHECK(transport::robot_of_line("%09%A0") == "\x09\xA0");
   std::set<std::string> names;
   std::size_t robots = 0;
   constexpr std::string_view letters = "./%2F5";

@@ -182,6 +182,15 @@ TEST_CASE("slcan line: an adapter that talks on and on is opened after a second"
   CHECK(scene.line.times_of("S6") == Times{1s});
 }
 
+TEST_CASE("slcan line: an adapter that talks on and on has three times its patience where that is longer") {
+  Scene scene{without("V")};
+  SlcanOptions options;
+  options.patience = 400ms;
+  for (int i = 1; i < 40; ++i) scene.line.say_later(i * 50ms, "\r");
+  scene.open(options);
+  CHECK(scene.line.times_of("S6") == Times{1200ms});
+}
+
 TEST_CASE("slcan line: a version without a text is a version") {
   Scene scene{with('V', "V\r")};
   scene.open();
@@ -705,6 +714,26 @@ TEST_CASE("slcan line: what was refused goes again within the window") {
   CHECK(scene.line.heard == "t100101\rt101102\rt100101\rt101102\r");
   CHECK(scene.bus->delivery().pending == 2);
   CHECK(scene.bus->adapter_counters().sent_again == 2);
+}
+
+TEST_CASE("slcan line: what was refused waits for a place in the window, in which a status has one, too") {
+  Scene scene;
+  SlcanOptions options;
+  options.window = 1;
+  scene.begin(options);
+  scene.line.answers.erase('t');
+  scene.line.answers.erase('F');
+  scene.line.kernel.pass(900ms);
+  CHECK(*scene.bus->send(frame("100#01")));
+  CHECK(scene.bus->receive(100ms).error == Error::timed_out);
+  CHECK(scene.line.heard == "t100101\rF\r");
+  scene.line.say("\a");
+  CHECK(scene.bus->receive(10ms).error == Error::timed_out);
+  CHECK(scene.line.heard == "t100101\rF\r");
+  scene.line.say("F00\r");
+  CHECK(scene.bus->receive(0ns).error == Error::timed_out);
+  CHECK(scene.line.heard == "t100101\rF\rt100101\r");
+  CHECK(scene.bus->adapter_counters().sent_again == 1);
 }
 
 TEST_CASE("slcan line: what was refused waits for room in the line") {

@@ -113,4 +113,14 @@ TEST_CASE("slcan: an arrival before the one before is one at the same time") {
   CHECK(clock.map(10, at(0s)) == at(0s));
 }
 
+TEST_CASE(
+    "slcan: a stamp that is half a minute ahead of the arrivals is ahead, and one beyond that is behind") {
+  StampClock ahead;
+  CHECK(ahead.map(0, at(40s)) == at(40s));
+  CHECK(ahead.map(30'000, at(12s)) == at(12s));
+  StampClock behind;
+  CHECK(behind.map(0, at(40s)) == at(40s));
+  CHECK(behind.map(30'001, at(12s)) == at(10s + 1ms));
+}
+
 }  // namespace transport_slcan_stamps_test

@@ -106,6 +106,9 @@ TEST_CASE("the kernel's drop counter wraps and may be read twice") {
   CHECK(drops.advance(0x7000'0000) == 0x7000'0000 - 10);
   CHECK(drops.advance(0xE000'0000) == 0x7000'0000);
   CHECK(drops.advance(3) == 0x2000'0003);
+  transport::detail::DropCounter far;
+  CHECK(far.advance(0x7FFF'FFFF) == 0x7FFF'FFFF);  // the most that is no older reading
+  CHECK(far.advance(0xFFFF'FFFF) == 0);
 }
 
 TEST_CASE("names that no interface can have are refused before the kernel is asked") {
@@ -144,6 +147,22 @@ TEST_CASE("each failure names the interface and the remedy") {
   CHECK_THAT(gone_failure("can0").what, Catch::Contains("'can0' is gone"));
   CHECK(system_failure("can0", "send on", EIO).what ==
         std::string("cannot send on interface 'can0': ") + std::strerror(EIO));
+}
+
+TEST_CASE(
+    "a remedy is that of the interface's kind, also where its driver does not say it or none is there") {
+  using namespace transport::detail;
+  const std::vector<CanInterface> others = {{"vxcan0", 6, true, "vxcan", 0}, {"slcan0", 7, false, "", 0}};
+  CHECK(no_fd_failure("vxcan0", others).remedy ==
+        "sudo ip link set vxcan0 down; sudo ip link set vxcan0 mtu 72; sudo ip link set vxcan0 up");
+  CHECK(
+      no_fd_failure("can9", {}).remedy ==
+      "sudo ip link set can9 down; sudo ip link set can9 up type can bitrate 500000 dbitrate 2000000 fd on, "
+      "if its controller has CAN FD");
+  CHECK(down_failure("slcan0", others).remedy == "sudo ip link set slcan0 up type can bitrate 500000");
+  CHECK(down_failure("vxcan0", others).remedy == "sudo ip link set vxcan0 up");
+  CHECK(wrong_type_failure("lo", {}).remedy == "this machine has none: `ip link show type can`");
+  CHECK(missing_failure("can7", {}).what == "there is no interface 'can7', nor any CAN interface");
 }
 
 TEST_CASE("an interface that is not there fails with a reason and a remedy") {
