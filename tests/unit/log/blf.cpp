@@ -410,7 +410,7 @@ TEST_CASE("blf: objects of the shortest size, and containers without one, are pa
   CHECK(cause_of(object(1, 5, "")) == Cause::length);
 }
 
-TEST_CASE("blf: damage is told of once, and the next one again") {
+TEST_CASE("blf: damage is said of once, and the next one again") {
   const std::string rubbish(200, 'x');
   const auto between = read_blf(head + rubbish + container(message) + rubbish + container(message));
   CHECK(between.entries.size() == 2);
