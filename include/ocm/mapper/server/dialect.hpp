@@ -472,8 +472,10 @@ class Translator {
       line_.clear();
       return of_robot(c);
     }
+    // The end of a line counts: packed updates, which have no line end, may stand before it.
     constexpr std::size_t longest = 96;
-    if (line_.size() < longest) line_ += c;
+    if (line_.size() == longest) line_.erase(0, 1);
+    line_ += c;
     // Its words are no robot's: what a robot says has no small letters, and a list's line begins no sentence.
     if (!(c >= 'a' && c <= 'z')) of_robot(c);
   }
