@@ -82,10 +82,11 @@ transport::Outcome<void> Spool::append(std::span<const log::Entry> entries,
   // A clock that was set begins a new file, too.
   if (!file_ || first < begin_ || first - begin_ >= lasting_) {
     file_.reset();
-    number_ = 1 - number_;
-    auto file = logs::LogFile::create(path(number_), *logs::find_format("candump"), *catalogue_,
+    const int other = 1 - number_;
+    auto file = logs::LogFile::create(path(other), *logs::find_format("candump"), *catalogue_,
                                       logs::Existing::overwrite);
-    if (!file) return std::move(file.error);
+    if (!file) return std::move(file.error);  // the newer one stays as it is, and this is tried again
+    number_ = other;
     file_ = std::move(*file);
     file_->without_signals();
     begin_ = first;

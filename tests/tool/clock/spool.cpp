@@ -95,6 +95,25 @@ TEST_CASE("spool: what the disk does not take is said, and what comes next is in
 }
 
 TEST_CASE(
+    "spool: where the other file cannot be opened the one that was written last stays, and it is tried "
+    "again") {
+  Spooled spooled;
+  CHECK(spooled.append(0s));
+  const auto other = spooled.folder / "test.running-1.log";
+  std::filesystem::create_directory(other);
+  for (const Duration after : {Duration{10s}, Duration{10s + 500ms}}) {
+    const auto refused = spooled.append(after);
+    REQUIRE_FALSE(refused);
+    CHECK_THAT(refused.error.what, Catch::Contains("running-1.log"));
+    CHECK(spooled.holds(0) == "(1000000000.000000)");
+  }
+  std::filesystem::remove(other);
+  CHECK(spooled.append(11s));
+  CHECK(spooled.holds(0) == "(1000000000.000000)");
+  CHECK(spooled.holds(1) == "(1000000011.000000)");
+}
+
+TEST_CASE(
     "spool: what a run that was killed has left becomes one file, in the order in which it was written") {
   World world{1};
   const std::filesystem::path folder =
