@@ -233,7 +233,8 @@ BusSet read_spec(std::string_view text, const std::string& file, const std::vect
   for (const spec::Problem& doubt : std::span{loaded.doubts}.first(told))
     set.remarks.push_back(fmt::format("{}: {}; {}.", doubt.place, doubt.what, doubt.remedy));
   if (told < loaded.doubts.size())
-    set.remarks.push_back(fmt::format("{}: {} more doubtful places.", file, loaded.doubts.size() - told));
+    set.remarks.push_back(
+        fmt::format("{}: {}.", file, counted(loaded.doubts.size() - told, "more doubtful place")));
   return set;
 }
 

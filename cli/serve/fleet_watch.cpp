@@ -128,6 +128,8 @@ void FleetWatch::begin() {
     (void)map_of_owner();  // who looks on is not waited for
     return;
   }
+  placed_.clear();  // a line that was opened again has another fleet
+  place();
   link_all(*line_, [this](const std::string& words) { say(Level::warning, words); });
   auto& owner = line_->own()->owner();
   owner.on_draw([this](std::string_view form) {
@@ -143,9 +145,12 @@ void FleetWatch::begin() {
 /// fleet judges how far away a robot is.
 void FleetWatch::place() {
   if (line_->own() == nullptr) return;
-  for (const auto& peer : line_->end().peers())
+  for (const auto& peer : line_->end().peers()) {
+    // Once: where a robot begins again the fleet moves its origin itself.
+    if (std::exchange(placed_[peer.index], peer.name) == peer.name) continue;
     for (const fleet::Start& start : known_.starts)
       if (start.name == peer.name) line_->own()->server().fleet().set_origin(peer.index, start.pose);
+  }
 }
 
 /// Of a program that has the line and does not know where its robots began this one may.

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -78,8 +79,9 @@ class FleetWatch {
   std::string gone_;  ///< why there is no line now
   bool scans_ = false;
   bool owner_draws_ = false;
-  std::size_t robots_ = 0;  ///< on the list
-  std::string map_;         ///< that was published last
+  std::size_t robots_ = 0;                  ///< on the list
+  std::map<unsigned, std::string> placed_;  ///< whose start the fleet has, by index
+  std::string map_;                         ///< that was published last
   base::Time next_state_{};
   base::Time next_map_{};
   std::function<void()> woken_;

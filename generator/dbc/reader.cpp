@@ -79,7 +79,8 @@ class Resolver {
     for (auto& statement : statements_.senders) senders(statement);
     for (auto& statement : statements_.selectors) selector(statement);
     for (auto& statement : statements_.attributes) attribute(statement);
-    for (const auto& statement : statements_.messages) expect_countable(statement);
+    for (std::size_t i = 0; i < statements_.messages.size(); ++i)
+      if (!replaced_[i]) expect_countable(statements_.messages[i]);
     for (std::size_t i = 0; i < statements_.messages.size(); ++i)
       if (!replaced_[i]) multiplexing(statements_.messages[i]);
     for (auto& statement : statements_.messages) meaning(statement.message);

@@ -424,8 +424,8 @@ class Page {
 
   static std::string row(const FieldModel& field) {
     const std::string unit = field.unit.empty() ? "" : " " + field.unit;
-    std::string scale =
-        field.scale == base::Decimal{1, 0} && field.unit.empty() ? "" : print(field.scale) + unit;
+    const bool plain = field.scale == base::Decimal{1, 0} && field.unit.empty() && field.offset.digits == 0;
+    std::string scale = plain ? "" : print(field.scale) + unit;
     if (field.offset.digits != 0) scale += ", from " + print(field.offset) + unit;
     const Range range = range_of(field);
     std::string text = sentence(field.description);

@@ -67,11 +67,14 @@ std::optional<Problem> write_file(const std::string& path, std::string_view text
     if (file >= 0) ::close(file);
     return problem;
   }
-  // As far as the links lead, to what may not be there yet; the file system refuses more than 40.
+  // As far as the links lead, to what may not be there yet; no more than the file system follows.
   std::error_code error;
   std::filesystem::path target = path;
   for (int links = 0; links < 40 && std::filesystem::is_symlink(target, error); ++links)
     target = target.parent_path() / std::filesystem::read_symlink(target, error);
+  if (std::filesystem::is_symlink(target, error))
+    return Problem{path, std::string{"it cannot be written: "} + std::strerror(ELOOP),
+                   "a link that leads to a file"};
   return replace(path, target, text, exists ? std::optional<::mode_t>{old.st_mode & 07777U} : std::nullopt);
 }
 

@@ -130,6 +130,13 @@ class Program(unittest.TestCase):
         self.assertEqual(run(self.spec, "-o", self.header).returncode, 0)
         self.assertTrue(self.header.is_symlink() and (self.folder / "deep" / "link.hpp").is_symlink())
         self.assertIn("namespace pair", real.read_text())
+        # Links in a circle lead nowhere, and stay.
+        self.header.unlink()
+        self.header.symlink_to(self.header.name)
+        done = run(self.spec, "-o", self.header)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("it cannot be written: Too many levels of symbolic links; a link that leads to a file", done.stderr)
+        self.assertTrue(self.header.is_symlink())
 
     def test_a_new_header_has_the_mode_of_any_new_file(self):
         subprocess.run(["sh", "-c", f'umask 027; exec "$0" "$1" -o "$2"', TOOL, self.spec, self.header], check=True)

@@ -194,6 +194,17 @@ class Robots(Case):
         self.robot(viewer, "Arduino", lambda r: r["linked"], "a link to the second")
         self.assert_origins_are_told()
 
+    def test_a_robot_that_begins_again_is_where_it_stands(self):
+        """Its start was that of its first handshake; from another one on its pose begins at 0 there."""
+        _, _, _, viewer = self.both()
+        self.run_tool("goto", "AVR", "0", "20")
+        self.robot(viewer, "AVR", lambda r: r["at"]["x_m"] > 0.55, "its new place")
+        self.avr.start = (self.avr.x, self.avr.y, self.avr.heading)
+        self.avr.confirmed = False
+        waiting.until(lambda: self.avr.confirmed, "an answer to its handshake")
+        for _ in range(10):
+            self.assertGreater(self.robot(viewer, "AVR", lambda r: r["at"], "its place")["at"]["x_m"], 0.55)
+
     def test_a_robot_that_a_look_finds_and_that_cannot_be_linked_is_named(self):
         self.central.robots = [self.avr]
         _, port, token = self.serve("--allow-commands", starts=())
