@@ -255,7 +255,7 @@ TEST_CASE("a count of lost frames is one with a number and the name of an interf
   CHECK(log.reader.recorded()[0].dropped == 3);
 }
 
-TEST_CASE("an explanation without an error frame above it is none") {
+TEST_CASE("an explanation needs an error frame above it, or its line is refused") {
   const Log log{"\tcontroller-problem{}\n  can0  605   [0]\n"};
   CHECK(log.entries.size() == 1);
   CHECK(log.reader.complaints().count(Cause::syntax) == 1);
