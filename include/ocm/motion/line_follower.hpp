@@ -2,10 +2,10 @@
 /// in front, one on either side of them that see the floor beside the line.
 ///
 /// How dark each of the front pair is, in parts of what the brighter side sensor sees, says how far the line
-/// is off: while it is under both not at all, then the far one brightens first, then the near one. So a floor
-/// and its light need no calibration; only the line must be darker than half of the floor. The robot steers
-/// along the circle that leads from its axle through the line in front of it (pure pursuit), and slows down
-/// for what is far off.
+/// is off: while it is under both alike not at all, then the far one brightens first, then the near one. So a
+/// floor and its light need no calibration; only the line must be darker than half of the floor. The robot
+/// steers along the circle that leads from its axle through the line in front of it (pure pursuit), and slows
+/// down for what is far off.
 ///
 /// When neither sees the line any more, the robot turns on the spot towards the side where it was last, and
 /// gives up after `search_s`.
@@ -83,11 +83,17 @@ struct LineFollowerStep {
   const float right = darkness(view.front_right);
   constexpr float least = 0.15F;  // less is a mark on the floor, or noise
   if (left < least && right < least) return {};
-  // Both on it in full: within `flat` of its middle. Each brightens over the width of its spot.
+  // Both on it in full: within `flat` of its middle. Each brightens over the width of its spot, the far one
+  // first.
   const float flat_m = model.half_line_m - model.spot_radius_m - model.apart_m / 2.0F;
-  const float bright = (1.0F - left) + (1.0F - right);
-  if (bright <= 0.0F) return {true, 0.0F};
-  const float offset_m = (flat_m > 0.0F ? flat_m : 0.0F) + bright * 2.0F * model.spot_radius_m;
+  const float nearer = left > right ? left : right;
+  const float farther = left > right ? right : left;
+  // A line that is not quite black darkens both alike: what counts is how much brighter the far one is.
+  const float brighter = 1.0F - farther / nearer;
+  // With less than that, only a part of `flat`: by noise alone it would go from side to side.
+  constexpr float noise = 0.1F;
+  const float offset_m = (flat_m > 0.0F ? flat_m : 0.0F) * clamp(brighter / noise, 0.0F, 1.0F) +
+                         brighter * (2.0F - nearer) * 2.0F * model.spot_radius_m;
   return {true, left > right ? offset_m : -offset_m};
 }
 

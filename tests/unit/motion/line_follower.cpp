@@ -48,6 +48,16 @@ static_assert(line_offset({1000, 864, 1000, 1000}, model).seen, "either of the t
 // The floor is what the brighter of the side sensors sees: the other may be on a mark.
 static_assert(line_offset({500, 1000, 1000, 100}, model).offset_m ==
               line_offset({500, 1000, 100, 1000}, model).offset_m);
+// In the middle of a grey line both are as dark: no offset, and a count more on one side is none to speak of.
+static_assert(line_offset({400, 400, 1000, 1000}, model).offset_m == 0.0F);
+static_assert(near(line_offset({400, 404, 1000, 1000}, model).offset_m, 0.0F, 3e-4F) &&
+              line_offset({400, 404, 1000, 1000}, model).offset_m > 0.0F &&
+              line_offset({404, 400, 1000, 1000}, model).offset_m < 0.0F);
+static_assert(near(line_offset({460, 1000, 1000, 1000}, model).offset_m, 0.002F + 1.4F * 0.008F, 1e-5F),
+              "the far one sees the floor");
+// Black: a tenth brighter is at the end of the flat middle, and a tenth of a spot more.
+static_assert(near(line_offset({100, 190, 1000, 1000}, model).offset_m, 0.002F + 0.0008F, 1e-5F));
+static_assert(near(line_offset({100, 145, 1000, 1000}, model).offset_m, 0.001F + 0.0004F, 1e-5F));
 // A line that is no wider than what the two see has no flat middle: half a spot brighter is half a spot off.
 constexpr LineFollowerModel thin{
     .ahead_m = 0.04F, .apart_m = 0.008F, .spot_radius_m = 0.004F, .half_line_m = 0.005F};
