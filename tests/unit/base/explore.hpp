@@ -33,12 +33,12 @@ inline constexpr bool at_full_speed = !sanitized && !emulated;
 inline constexpr bool at_full_speed = false;
 #endif
 
-/// OCM_EXPLORE times a test's usual; unset, it is 1. With sanitizers a tenth of it, which takes as long, and
-/// `least` where fewer would say little.
+/// OCM_EXPLORE times a test's usual; unset, it is 1. With sanitizers and emulated a tenth of it, which takes
+/// as long, and `least` where fewer would say little.
 inline int explored(int usual, int least = 1) {
   const char* const text = std::getenv("OCM_EXPLORE");
   const int times = text == nullptr ? 1 : std::clamp(std::atoi(text), 1, 1000);
-  return std::max(usual * times / (sanitized ? 10 : 1), least);
+  return std::max(usual * times / (sanitized || emulated ? 10 : 1), least);
 }
 
 /// The step through a range that a host's test goes through one by one: emulated it takes so much larger

@@ -231,7 +231,7 @@ TEST_CASE("the usual path makes the same of any line as the careful one, and as 
   const auto interfaces = test::interfaces_named({"can0", "can1", "a_name_of_15_ch"});
   RandomEntries entries{11, {}};
   test::Random random{12};
-  for (int round = 0; round < test::explored(20'000) / test::coarser(10); ++round) {
+  for (int round = 0; round < test::explored(20'000); ++round) {
     const Entry entry = entries.next();
     log::CandumpWriter writer{random.below(2) == 0 ? log::CandumpWriter::Digits::microseconds
                                                    : log::CandumpWriter::Digits::nanoseconds};

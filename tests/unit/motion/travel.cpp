@@ -4,6 +4,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "unit/base/explore.hpp"
 #include "unit/base/random.hpp"
 #include "unit/motion/near.hpp"
 
@@ -177,7 +178,7 @@ Run run(const TravelTarget& target, Robot robot, bool blocked = false) {
 
 TEST_CASE("a travel ends where it should, as fast as it may, and does not run over its end") {
   Random random{1};
-  for (int i = 0; i < 300; ++i) {
+  for (int i = 0; i < 300 / ocm::test::coarser(10); ++i) {
     CAPTURE(i);
     const auto within = [&random](float low, float high) {
       return low + (high - low) * static_cast<float>(random.below(10'001)) / 10'000.0F;
