@@ -102,6 +102,7 @@ TEST_CASE("a command's frames, then those of CAN FD, then a broadcast from its a
   fd.length = 12;
   fd.flags = can::frame_flag::fd;
   client::Command command;
+  CHECK_FALSE(command.ends_hold);
   command.frames.push_back(classic);
   command.fd_frames.push_back(fd);
   command.broadcast = broadcast;

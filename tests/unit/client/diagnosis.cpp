@@ -81,10 +81,16 @@ TEST_CASE("diagnosis: before anything came all numbers are zero") {
   CHECK_FALSE(robot.diagnosis.battery().answered);
   CHECK(robot.diagnosis.battery().state_of_charge == 0);
   CHECK_FALSE(robot.diagnosis.battery().plugged);
+  const BatteryMeasurement none{};
+  CHECK_FALSE(none.present);
+  for (const double number : {none.voltage_v, none.current_a, none.remaining_mah, none.temperature_celsius})
+    CHECK(number == 0);
 }
 
 TEST_CASE("diagnosis: no board answers") {
-  CHECK(Patient{}.findings() == Lines{"problem : no board answers"});
+  const Patient robot;
+  CHECK(robot.findings() == Lines{"problem : no board answers"});
+  CHECK(robot.diagnosis.findings()[0].remedy.ends_with("is its bit rate 500000 bit/s?"));
 }
 
 TEST_CASE("diagnosis: a board that sends without a status answers, too") {
@@ -93,6 +99,11 @@ TEST_CASE("diagnosis: a board that sends without a status answers, too") {
   CHECK(robot.findings() == Lines{"problem di_wheel_drive: does not answer",
                                   "problem light_ring: does not answer",
                                   "warning power_management: sends, and does not say how it is"});
+  Patient first;
+  first.say(amiro::Gyroscope{});
+  CHECK(first.findings() == Lines{"problem power_management: does not answer",
+                                  "problem light_ring: does not answer",
+                                  "warning di_wheel_drive: sends, and does not say how it is"});
 }
 
 TEST_CASE("diagnosis: one board is missing, another has an older firmware") {
@@ -114,6 +125,7 @@ TEST_CASE("diagnosis: of boards that were not asked nothing is found") {
   Patient robot;
   CHECK(found(robot, {}).empty());
   CHECK(found(robot, {2}) == Lines{"light_ring: does not answer"});
+  CHECK(found(robot, {1, 2}) == Lines{"power_management: does not answer", "light_ring: does not answer"});
   CHECK(found(robot, {0, 1, 2}) == Lines{": no board answers"});
   robot.say(amiro::ProximityRing{});  // power_management sends
   CHECK(found(robot, {}).empty());
@@ -140,6 +152,9 @@ TEST_CASE("diagnosis: which boards were asked, by any program") {
   hear(ocm::protocol::once(amiro::catalogue.find("light_ring_refusal")->id), begin);
   hear(ocm::protocol::once(amiro::Gyroscope::id), begin);
   hear(ocm::protocol::command(amiro::Motors{}), begin);
+  auto no_such_mode = ocm::protocol::once(status.id);
+  no_such_mode.data[0] = 7;
+  hear(no_such_mode, begin);
   for (std::size_t board = 0; board < 3; ++board) CHECK_FALSE(requests.any(board));
   hear(ocm::protocol::once(status.id), begin);
   hear(ocm::protocol::once(status.id), begin + 400ms);  // the first one counts
@@ -321,6 +336,44 @@ TEST_CASE("diagnosis: a battery that says its charge in the first of two frames,
   REQUIRE(diagnosis.findings().size() == 1);
   CHECK(diagnosis.findings()[0].severity == Severity::problem);
   CHECK(diagnosis.findings()[0].ailment == Ailment::battery_low);
+}
+
+TEST_CASE("diagnosis: of a status counts what each frame says itself, and what none says is zero") {
+  using ocm::protocol::Field;
+  const auto& whole = *amiro::catalogue.find("light_ring_status");
+  REQUIRE(whole.frames.size() == 2);
+  const auto field_of = [&](std::size_t frame, std::string_view name) {
+    const auto fields = whole.frames[frame].fields;
+    return *std::find_if(fields.begin(), fields.end(),
+                         [name](const Field& field) { return field.name == name; });
+  };
+  Field other_load = field_of(0, "uptime");
+  other_load.name = "load";
+  Field reset = field_of(0, "reset");
+  reset.flags = true;  // names of bits, of which several may be set, are no cause
+  const std::vector<Field> identity{other_load, reset}, health{field_of(1, "load")};
+  auto first = whole.frames[0], second = whole.frames[1];
+  first.fields = identity;
+  second.fields = health;
+  const std::vector frames{first, second};
+  auto topic = whole;
+  topic.frames = frames;
+  const std::vector topics{topic};
+  const ocm::protocol::Catalogue sparse{"sparse", 500'000, amiro::catalogue.boards, topics};
+  Receiver receiver{sparse};
+  Diagnosis diagnosis{sparse};
+  auto status = Patient::healthy<amiro::LightRingStatus>();
+  status.health.load = 4;
+  for (std::size_t i = 0; i < status.frames.size(); ++i)
+    diagnosis.take(receiver.take({{}, ocm::protocol::sample_frame(status, Priority::low, i)}));
+  const BoardReport& board = diagnosis.boards()[2];
+  REQUIRE(board.answered);
+  CHECK(board.load == 4);
+  CHECK(board.reset.empty());
+  CHECK(board.bus.empty());
+  for (const std::int64_t number :
+       {board.uptime_s, board.wire_hash, board.publishing, board.faults, board.overload, board.bus_errors})
+    CHECK(number == 0);
 }
 
 TEST_CASE("diagnosis: a topic of a board that the catalogue lacks is passed over") {
@@ -519,6 +572,9 @@ TEST_CASE("diagnosis: what a board publishes, what it does not, and what it has 
   CHECK((!robot.diagnosis.publishes(odometry) && robot.diagnosis.is_silent(odometry)));
   CHECK(!robot.diagnosis.is_silent(*amiro::catalogue.find("proximity_ring")));  // of a board that is silent
   CHECK(!robot.diagnosis.is_silent(*amiro::catalogue.find("motors")));          // no sensor
+  robot.say(Patient::healthy<amiro::LightRingStatus>());
+  const auto& led = *amiro::catalogue.find("led_1");  // none either, of a board with few of them
+  CHECK((!robot.diagnosis.publishes(led) && !robot.diagnosis.is_silent(led)));
 }
 
 TEST_CASE("diagnosis: a board with more sensors than its status has bits: of those beyond nothing is known") {
@@ -552,7 +608,11 @@ TEST_CASE("diagnosis: requests and set points say nothing about a board") {
   Patient robot;
   robot.diagnosis.take(robot.receiver.take({{}, ocm::protocol::once(amiro::Gyroscope::id)}));
   robot.diagnosis.take(robot.receiver.take({{}, ocm::protocol::command(amiro::Motors{})}));
-  CHECK(!robot.diagnosis.boards()[0].heard);
+  // And so do frames of no topic, and reports of the controller.
+  robot.diagnosis.take(robot.receiver.take({{}, ocm::can::Frame{.id = 0x7FF}}));
+  robot.diagnosis.take(
+      robot.receiver.take({{}, ocm::can::Frame{.id = 4, .dlc = 8, .format = ocm::can::Format::error}}));
+  for (const BoardReport& board : robot.diagnosis.boards()) CHECK(!board.heard);
 }
 
 TEST_CASE("diagnosis: a robot without status topics has nothing to find") {

@@ -75,6 +75,15 @@ TEST_CASE("presence: a frame of another format is none of a board's") {
   CHECK(presence.unheard().size() == 1);
 }
 
+TEST_CASE("presence: what is no set point commands no board") {
+  Presence presence{amiro::catalogue};
+  presence.sent(sample_of_gyroscope());
+  presence.sent({.id = 0x7FF});
+  presence.take({.id = 0x7FF});
+  CHECK(presence.signs().empty());
+  CHECK(presence.unheard().empty());
+}
+
 TEST_CASE("presence: a board without a status is not asked") {
   const auto without = [](protocol::Role role) {
     std::vector<protocol::Topic> topics{amiro::catalogue.topics.begin(), amiro::catalogue.topics.end()};

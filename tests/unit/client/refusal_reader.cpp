@@ -49,6 +49,13 @@ TEST_CASE("refusal reader: what was refused, and how many of it") {
   CHECK(bus.hear(0x08, 0)->count == 1);
 }
 
+TEST_CASE("refusal reader: a refusal of which nothing is said is one, and not known to be the first") {
+  const Refused refused{};
+  CHECK(refused.number == 0);
+  CHECK(refused.count == 1);
+  CHECK_FALSE(refused.first);
+}
+
 TEST_CASE("refusal reader: other samples, and numbers that the board does not have, are none") {
   Bus bus;
   CHECK_FALSE(bus.hear(amiro::Gyroscope{}));

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <optional>
+#include <vector>
 
 #include <catch2/catch.hpp>
 
@@ -59,6 +60,23 @@ TEST_CASE("refusals: of one of several actuators of a kind") {
   REQUIRE(led);
   CHECK(led->topic->name == "led_4");
   CHECK(led->board == "light_ring");
+}
+
+TEST_CASE("refusals: of the highest number that a topic can have") {
+  constexpr protocol::TopicId highest{0xFF};
+  std::vector<protocol::Topic> topics{amiro::catalogue.topics.begin(), amiro::catalogue.topics.end()};
+  for (protocol::Topic& topic : topics)
+    if (topic.name == "magnetometer") topic.id = highest;
+  protocol::Catalogue catalogue = amiro::catalogue;
+  catalogue.topics = topics;
+  Refusals refusals{catalogue};
+  refusals.sent(*protocol::publish_every(highest, 1ms), base::Time{10s});
+  const amiro::DiWheelDriveRefusal refusal{0xFF, Reason::not_schedulable, 1, 0};
+  const auto refused =
+      refusals.take({{}, protocol::sample_frame(refusal, protocol::Priority::low, 0)}, base::Time{10s + 1ms});
+  REQUIRE(refused);
+  CHECK(refused->topic->name == "magnetometer");
+  CHECK(refused->number == 0xFF);
 }
 
 TEST_CASE("refusals: of what another program has sent are not this one's") {

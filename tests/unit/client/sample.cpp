@@ -43,6 +43,7 @@ TEST_CASE("what several receivers count is each number's sum") {
   CHECK(sum.errors == 918);
   CHECK(sum.transport == 1020);
   CHECK(sum.unselected == 1122);
+  CHECK(one.faults() == 4 + 5 + 6 + 7 + 8 + 9);
 }
 
 TEST_CASE("a sample of one frame is complete at once") {
@@ -286,6 +287,27 @@ TEST_CASE("the packet that completes a message is the sample") {
   CHECK(receiver.transport_counters(base::Time{3ms}).complete == 1);
 }
 
+TEST_CASE("a message in packets whose selector chooses nothing is counted, and a sample all the same") {
+  const std::array chosen{protocol::SelectorRange{2, 2}};
+  std::array<protocol::Field, 2> fields{byte_at("page", 0), byte_at("of_page_2", 8)};
+  fields[1].selector = 0;
+  fields[1].selected = chosen;
+  protocol::FrameLayout layout = group_frames[0];
+  layout.fields = fields;
+  protocol::Topic topic = groups[0];
+  topic.frames = {&layout, 1};
+  const protocol::Catalogue paged{"paged", 250'000, {}, {&topic, 1}};
+  Receiver receiver{paged, client::Transport::together};
+  // Page 1, which the spec has not, and page 2.
+  for (const std::string_view first : {"1CEBFF00#0101020304050607", "1CEBFF00#0102020304050607"}) {
+    for (const std::string_view text : {announcement, first, packets[1]})
+      static_cast<void>(take(receiver, text));
+    CHECK(take(receiver, packets[2]).meaning == Meaning::sample);
+    CHECK(receiver.counters().unselected == 1);
+  }
+  CHECK(receiver.counters().samples == 2);
+}
+
 TEST_CASE("a message of an unknown group is whole, and unknown") {
   Receiver receiver{truck, client::Transport::together};
   static_cast<void>(take(receiver, "1CECFF00#20110003FFEDFE00"));
@@ -405,6 +427,8 @@ TEST_CASE("a frame is of the message that is on its interface") {
   };
   CHECK(on(4) == &topics[0]);
   CHECK(on(2) == &topics[1]);
+  receiver.on_interface(0, "can1");
+  CHECK(receiver.take({base::Time{}, frame}).topic == &topics[1]);  // of the bus 0, if none is named
   CHECK_FALSE(Receiver{amiro::catalogue}.has_buses());
 }
 

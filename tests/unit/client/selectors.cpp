@@ -51,6 +51,23 @@ TEST_CASE("a selector chooses nothing exactly with the values that no field name
   }
 }
 
+TEST_CASE("ranges that lie within another one take nothing from it") {
+  constexpr std::array wide{SelectorRange{2, 9}};
+  constexpr std::array within{SelectorRange{5, 6}, SelectorRange{3, 4}};
+  auto all = fields();
+  all[1].selected = wide;
+  all[2].selected = within;
+  protocol::FrameLayout layout;
+  layout.length = 4;
+  layout.fields = all;
+  const Selectors selectors{layout};
+  for (unsigned value = 0; value < 256; ++value) {
+    const std::vector<std::uint8_t> bytes{static_cast<std::uint8_t>(value), 2, 0, 0, 0, 0, 0, 0};
+    INFO(value);
+    CHECK(selectors.choose_nothing(bytes) == (value < 2 || value > 9));
+  }
+}
+
 TEST_CASE("a selector that is selected itself counts where it is there") {
   const auto all = fields();
   protocol::FrameLayout layout;

@@ -95,6 +95,14 @@ TEST_CASE("bus_load: what is a window old is out of it") {
   CHECK(load.worst_bits() == 15);
 }
 
+TEST_CASE("bus_load: what came before a pause is in no window behind it") {
+  BusLoad load;
+  load.add(Time{50ms}, 5);
+  load.add(Time{1s}, 7);
+  load.add(Time{1060ms}, 7);
+  CHECK(load.worst_bits() == 14);
+}
+
 TEST_CASE("bus_load: times that go back, a little and a lot, and before 1970") {
   BusLoad load;
   load.add(Time{-1ms}, 5);
@@ -119,6 +127,7 @@ TEST_CASE("bus_load: a share of time") {
   STATIC_REQUIRE(share(500, 1ms, 1'000'000) == 0.5);
   STATIC_REQUIRE(share(50'000, 100ms, 500'000) == 1.0);
   STATIC_REQUIRE(share(100, 0ms, 500'000) == 0.0);
+  STATIC_REQUIRE(share(1, 1ns, 1'000'000'000) == 1.0);
 }
 
 }  // namespace measure_bus_load_test

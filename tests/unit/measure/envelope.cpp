@@ -155,6 +155,7 @@ TEST_CASE("envelope: a pause is more than five of the distances that are usual")
   CHECK(parts_at({100, 20, 455}));
   CHECK_FALSE(parts_at({100, 20, 454}));
   CHECK_FALSE(parts_at({1'000'000}));  // nothing is usual yet
+  CHECK(parts_at({1, 10}));
 }
 
 TEST_CASE("envelope: a slower period behind a pause is a curve again") {

@@ -48,6 +48,13 @@ TEST_CASE("recent times: by hand") {
   CHECK(shortest.figures(at(1ns)).rate_hz == Approx(1e9));
 }
 
+TEST_CASE("recent times: the jitter of a nanosecond is not lost in distances of many") {
+  // 100 ms, 100 ms, and one ns more: squares 1/9 + 1/9 + 4/9, deviation sqrt(2/9) ns.
+  RecentTimes times;
+  for (const auto time : {0ns, 100'000'000ns, 200'000'000ns, 300'000'001ns}) times.add(at(time));
+  CHECK(times.figures(at(300'000'001ns)).jitter_ns == Approx(std::sqrt(2.0 / 9)));
+}
+
 TEST_CASE("recent times: of two seconds, but always the newest distance, and of sixteen at most") {
   CHECK(figures_of({0, 1000, 2000, 3000, 4000}).distances == 2);
   CHECK(figures_of({0, 1000, 1990, 2990}).distances == 2);
@@ -119,9 +126,18 @@ TEST_CASE("recent load: by hand") {
   CHECK(load.bits(at(11'600ms)) == 0);
 }
 
+TEST_CASE("recent load: from half a tenth that is over on, what is under way does not count") {
+  RecentLoad load;
+  load.add(at(10'060ms), 100);
+  load.add(at(10'140ms), 300);
+  CHECK(load.share(at(10'150ms), at(10'050ms), 1000) == Approx(100 / 50.0));
+  CHECK(load.share(at(10'150ms), at(10'050ms + 1ns), 1000) == Approx(400 / 100.0));
+}
+
 TEST_CASE("recent load: a clock that is set back a little changes nothing, far back it drops all before it") {
   RecentLoad load;
   load.add(at(10s), 100);
+  CHECK(load.bits(at(9'950ms)) == 0);
   load.add(at(9'950ms), 10);
   CHECK(load.bits(at(10'100ms)) == 110);
   load.add(at(8'950ms), 7);  // a tenth more than the second

@@ -66,6 +66,8 @@ TEST_CASE("recent requests: none is undone after its time, before it, or without
   CHECK(requests.refused(0, Time{1s}, 1, stream) == 1);  // by no more than that
   requests.asked(0, Time{2s}, 0s, stream);
   CHECK(requests.refused(0, Time{2s}, 1, stream) == 0);
+  requests.asked(0, Time{2s}, 1ns, stream);
+  CHECK(requests.refused(0, Time{2s}, 1, stream) == 1);
 }
 
 TEST_CASE("recent requests: of very many the oldest are forgotten") {

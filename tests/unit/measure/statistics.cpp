@@ -287,6 +287,44 @@ TEST_CASE("statistics: nothing came") {
   CHECK(figures.rate_hz == 0.0);
 }
 
+TEST_CASE("statistics: figures that nothing was put into are zero") {
+  const Stranger stranger{};
+  CHECK(stranger.id == 0);
+  CHECK(stranger.count == 0);
+  const WrongLength wrong{};
+  CHECK(wrong.id == 0);
+  CHECK(wrong.length == 0);
+  CHECK(wrong.right == 0);
+  const TopicFigures topic{};
+  for (const std::uint64_t number :
+       {topic.incomplete, topic.wrong_dlc, topic.requests, topic.bad_requests, topic.refused})
+    CHECK(number == 0);
+  CHECK(topic.load == 0.0);
+  const BusFigures bus{};
+  for (const std::uint64_t number : {bus.fd_frames, bus.not_in_load, bus.overflows}) CHECK(number == 0);
+  for (const double number : {bus.rate_hz, bus.load, bus.request_load, bus.stranger_load, bus.worst_load})
+    CHECK(number == 0.0);
+  CHECK(bus.span() == 0s);
+}
+
+TEST_CASE("statistics: reports of the controller have no rate, and a single frame has none") {
+  Recorded errors;
+  for (const auto time : {5s, 6s}) errors.put(time, "20000040#0000000000000000");
+  CHECK(errors.statistics.figures().span() == 1s);
+  CHECK(errors.statistics.figures().rate_hz == 0.0);
+  CHECK(errors.statistics.figures().worst_load == 0.0);
+  CHECK(errors.statistics.figures().worst_until == Time{5s});  // no frame is in the load
+  Recorded log;
+  log.put(5s, "608#3E001E00FCFF");
+  const auto one = log.statistics.figures();
+  CHECK(one.rate_hz == 0.0);
+  CHECK(one.load == 0.0);
+  REQUIRE(one.topics.size() == 1);
+  CHECK(one.topics[0].timing.count == 1);
+  log.put(5s + 1ns, "655#");
+  CHECK(log.statistics.figures().rate_hz == 1e9);
+}
+
 TEST_CASE("statistics: they are as of the last frame, or of later, never of before") {
   BusStatistics statistics{amiro::catalogue, {500'000}};
   for (const auto time : {1s, 2s, 3s})
@@ -312,7 +350,7 @@ TEST_CASE("statistics: CAN FD is in the load by both bit rates, if they are know
   const auto bits = ocm::can::fd_frame_bits(frame);
   for (const std::uint32_t data_rate : {0U, 500'000U, 2'000'000U}) {
     BusStatistics statistics{amiro::catalogue, {500'000, data_rate}};
-    for (int i = 0; i <= 100; ++i) statistics.take_fd(frame, Time{i * 10ms});
+    for (int i = 0; i <= 100; ++i) statistics.take_fd(frame, Time{1s + i * 10ms});
     const auto figures = statistics.figures();
     CHECK(figures.fd_frames == 101);
     CHECK(figures.not_in_load == (data_rate == 0 ? 101 : 0));
@@ -340,6 +378,7 @@ TEST_CASE("statistics: CAN FD is counted apart, strangers only so many") {
   CHECK(figures.fd_frames == 1);
   CHECK(figures.span() == 1s);
   CHECK(figures.strangers.size() == BusStatistics::most_strangers);
+  CHECK(figures.strangers.size() == 32);
   CHECK(figures.counters.unknown == 100);
 }
 

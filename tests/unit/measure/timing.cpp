@@ -34,9 +34,57 @@ TEST_CASE("timing: a perfect stream") {
   CHECK(timing.spread_ns == 0);
   CHECK(timing.lateness_ns == 0);
   CHECK(timing.gap_ns == 500'000'000);
+  CHECK(timing.gap_from == at(0s));  // of equal ones the first
   CHECK(timing.missing == 0);
   CHECK(timing.period_ns == 500'000'000);
   CHECK(timing.period_from == PeriodFrom::request);
+}
+
+TEST_CASE("timing: of a stream that has had no sample there is nothing to say") {
+  for (const Timing& timing : {Timing{}, Stream{}.timing(at(1s)), Stream{50ms}.timing(at(1s))}) {
+    CHECK(timing.count == 0);
+    CHECK(timing.distances == 0);
+    CHECK(timing.rate_hz == 0.0);
+    CHECK(timing.mean_ns == 0.0);
+    CHECK(timing.jitter_ns == 0.0);
+    CHECK(timing.spread_ns == 0);
+    CHECK(timing.lateness_ns == 0);
+    CHECK(timing.gap_ns == 0);
+    CHECK(timing.missing == 0);
+    CHECK(timing.backwards == 0);
+    CHECK(timing.period_ns == 0);
+    CHECK(timing.period_from == PeriodFrom::nothing);
+    CHECK_FALSE(timing.faster);
+    CHECK_FALSE(timing.due);
+  }
+}
+
+TEST_CASE(
+    "timing: two samples have a rate, however close they are, and no period unless there is a usual one") {
+  Stream stream;
+  stream.sample(at(0ns));
+  stream.sample(at(1ns));
+  const Timing timing = stream.timing(at(1ns));
+  CHECK(timing.distances == 1);
+  CHECK(timing.mean_ns == 1.0);
+  CHECK(timing.rate_hz == 1e9);
+  CHECK(timing.period_from == PeriodFrom::nothing);
+  CHECK_FALSE(timing.due);
+}
+
+TEST_CASE("timing: a period of a nanosecond is one") {
+  Stream stream{1ns, Usual::stated};
+  stream.sample(at(0ns));
+  stream.sample(at(3ns));
+  const Timing timing = stream.timing(at(6ns));
+  CHECK(timing.period_from == PeriodFrom::spec);
+  CHECK(timing.period_ns == 1);
+  CHECK(timing.missing == 2 + 2);
+  Stream measured{50ms};
+  measured.sample(at(0ns));
+  measured.sample(at(1ns));
+  CHECK(measured.timing(at(1ns)).period_from == PeriodFrom::measured);
+  CHECK(measured.timing(at(1ns)).period_ns == 1);
 }
 
 TEST_CASE("timing: samples are due from the request on, until one to stop") {
@@ -84,6 +132,15 @@ TEST_CASE("timing: lateness looks at a hundred samples at a time") {
   const Timing timing = stream.timing(at(1000 * 100ms));
   CHECK(timing.lateness_ns == 99 * 10'000);
   CHECK(timing.missing == 0);
+}
+
+TEST_CASE("timing: a sample behind a missing one is one of the hundred") {
+  Stream stream{50ms};
+  stream.asked(at(0ns), 100ms);
+  for (int i = 0; i < 500; ++i) stream.sample(at(i * 200'010us));  // each second one, 10 us later each
+  const Timing timing = stream.timing(at(499 * 200'010us));
+  CHECK(timing.missing == 499);
+  CHECK(timing.lateness_ns == 99 * 10'000);
 }
 
 TEST_CASE("timing: samples in time are among the hundred, too") {
@@ -134,6 +191,9 @@ TEST_CASE("timing: missing samples") {
     const Timing timing = stream_of({0, 100, 450, 550}, 100ms).timing(at(550ms));
     CHECK(timing.missing == 3);
     CHECK(timing.lateness_ns == 0);
+    const Timing shorter = stream_of({0, 100, 420, 520}, 100ms).timing(at(520ms));
+    CHECK(shorter.missing == 2);
+    CHECK(shorter.lateness_ns == 0);
   }
   SECTION("one that is late at the end is missing so far") {
     CHECK(stream_of({0, 100, 260}, 100ms).timing(at(260ms)).missing == 1);
@@ -152,7 +212,8 @@ TEST_CASE("timing: samples that all have the same time have no period, and nothi
 
 TEST_CASE("timing: silence at the end, where samples are due") {
   Stream stream = stream_of({0, 100, 200}, 100ms);
-  CHECK(stream.timing(at(349ms)).missing == 0);
+  CHECK(stream.timing(at(349'999'999ns)).missing == 0);
+  CHECK(stream.timing(at(350ms)).missing == 1);
   const Timing timing = stream.timing(at(1200ms));
   CHECK(timing.missing == 9);
   CHECK(timing.gap_ns == 1'000'000'000);
@@ -195,6 +256,8 @@ TEST_CASE("timing: before the first sample nothing is due, stated or not") {
   CHECK_FALSE(none.due);
   CHECK(none.missing == 0);
   CHECK(none.gap_ns == 0);
+  CHECK(none.period_from == PeriodFrom::spec);
+  CHECK(none.period_ns == 10'000'000);
 }
 
 TEST_CASE("timing: samples that come more often than stated have no lateness") {
@@ -204,6 +267,8 @@ TEST_CASE("timing: samples that come more often than stated have no lateness") {
   CHECK(events.missing == 0);
   CHECK(events.period_ns == 10'000'000);
   CHECK_FALSE(stated(8ms, 100).timing(at(800ms)).faster);  // within a quarter: a clock that runs fast
+  CHECK_FALSE(stated(7'500us, 100).timing(at(750ms)).faster);
+  CHECK(stated(7'499'999ns, 100).timing(at(750ms)).faster);
 }
 
 TEST_CASE("timing: asked, and nothing ever comes") {
@@ -262,6 +327,20 @@ TEST_CASE("timing: who fell silent before he was stopped was silent all the same
   CHECK(timing.gap_ns == 1'000'000'000);
 }
 
+TEST_CASE("timing: what comes behind a stop all the same has no period, and nothing of it is missing") {
+  Stream stream = stream_of({0, 100}, 100ms);
+  stream.stopped(at(150ms));
+  Stream unasked{50ms};
+  unasked.stopped(at(0s));
+  for (Stream* each : {&stream, &unasked}) {
+    for (const auto time : {1s, 2s, 3s}) each->sample(at(time));
+    CHECK(each->timing(at(9s)).missing == 0);
+    CHECK_FALSE(each->timing(at(9s)).due);
+  }
+  CHECK(stream.timing(at(9s)).period_from == PeriodFrom::request);
+  CHECK(unasked.timing(at(9s)).period_from == PeriodFrom::nothing);
+}
+
 TEST_CASE("timing: a request begins another grid: lateness does not add up across it") {
   Stream stream = stream_of({0, 100, 203}, 100ms);
   stream.asked(at(250ms), 100ms);
@@ -292,12 +371,25 @@ TEST_CASE("timing: without a request the period is the spec's or the measured on
       CHECK(timing.period_from == PeriodFrom::measured);
       CHECK(timing.period_ns == distance * 1'000'000);
     }
+    for (const Duration distance : {Duration{37'500us}, Duration{62'500us}}) {
+      Stream stream{50ms};
+      for (int i = 0; i < 20; ++i) stream.sample(at(i * distance));
+      CHECK(stream.timing(at(19 * distance)).period_from == PeriodFrom::spec);
+    }
     Stream few{50ms};
     for (const int ms : {0, 200, 220, 1220}) few.sample(at(std::chrono::milliseconds{ms}));  // 200, 20, 1000
     CHECK(few.timing(at(1220ms)).period_ns == 200'000'000);
     Stream two{50ms};
     for (const int ms : {0, 200, 220}) two.sample(at(std::chrono::milliseconds{ms}));  // 200, 20: the shorter
     CHECK(two.timing(at(220ms)).period_ns == 20'000'000);
+  }
+  SECTION("measured by the middle one of the first nine") {
+    Stream stream{100ms};
+    Time time = at(0ns);
+    stream.sample(time);
+    for (const int distance : {20, 20, 20, 20, 30, 30, 30, 30, 30, 20})
+      stream.sample(time += std::chrono::milliseconds{distance});
+    CHECK(stream.timing(time).period_ns == 30'000'000);
   }
   SECTION("measured") {
     Stream stream{50ms};
