@@ -101,7 +101,7 @@ class Grid {
   }
   void add(std::int64_t distance) noexcept {
     if (period_ <= 0) return;
-    if (owed_ > 0 && distance < period_ / 2) {
+    if (owed_ > 0 && distance <= period_ / 2) {  // half a period late counts as one owed: it is rounded up
       --owed_;
       caught_up_ += distance - period_;
       return;

@@ -165,6 +165,11 @@ TEST_CASE("timing: missing samples") {
     CHECK(timing.missing == 0);
     CHECK(timing.lateness_ns == 60'000'000);
   }
+  SECTION("late by just half a period") {
+    const Timing timing = stream_of({0, 100, 250, 300, 400}, 100ms).timing(at(400ms));
+    CHECK(timing.missing == 0);
+    CHECK(timing.lateness_ns == 50'000'000);
+  }
   SECTION("late by several, in a burst") {
     // And 20 ms late once more behind it, which is less.
     const Timing timing = stream_of({0, 100, 390, 391, 400, 500, 620}, 100ms).timing(at(620ms));
