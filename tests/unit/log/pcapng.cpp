@@ -144,7 +144,7 @@ TEST_CASE("pcapng: every resolution and offset of time") {
 }
 
 TEST_CASE("pcapng: blocks without frames are passed over, others said") {
-  const std::string other = block(0x0BAD, bytes("00112233"));
+  const std::string other = block(0x0BAD, bytes("00112233")) + block(0x0BAD, "");
   const std::string ethernet = block(1, bytes("0100 0000 00000000"));
   const std::string simple = block(3, bytes("10000000 00000123 02000000 1122000000000000"));
   const std::string of_ethernet = block(6, bytes("01000000 00000000 00000000 04000000 04000000 00000000"));
@@ -155,7 +155,7 @@ TEST_CASE("pcapng: blocks without frames are passed over, others said") {
   CHECK(log.entries.size() == 1);
   REQUIRE(log.complaints.size() == 3);
   CHECK(log.complaints[0].cause == Cause::time);
-  CHECK(log.complaints[0].place.number == 28 + 16 + 40 + 20);
+  CHECK(log.complaints[0].place.number == 28 + 16 + 12 + 40 + 20);
   CHECK(log.complaints[1].cause == Cause::unsupported);
   CHECK(log.complaints[1].detail == "link type 1");
   CHECK(log.complaints[2].cause == Cause::syntax);
