@@ -51,7 +51,8 @@ std::string why(const ChainStudy& study) {
   const auto& bound = study.bound;
   const std::string hop = bound.hop < study.entries.size() ? study.entries[bound.hop].name : "";
   if (bound.latency == analysis::unbounded)
-    return fmt::format("no bound: {}{}", hop.empty() ? "" : hop + ": ", analysis::describe(bound.reason));
+    return fmt::format("{}{}{}", bound.reason == analysis::Reason::too_long ? "" : "no bound: ",
+                       hop.empty() ? "" : hop + ": ", analysis::describe(bound.reason));
   const auto& slowest = study.hops[bound.hop];
   std::string text =
       fmt::format("{} takes the longest: {}", hop, time_text(slowest.waits + slowest.responds));

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <chrono>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -42,15 +43,20 @@ JoinedLine::JoinedLine(std::string_view verb, std::unique_ptr<LocalLink> owner)
 LocalAnswer JoinedLine::ask(std::string_view request, std::optional<unsigned> ordered) {
   auto answer = owner_->ask(request, patience);
   if (answer.kind != LocalAnswer::Kind::silent) return answer;
-  std::string driving;
+  std::vector<std::string> driving;
+  std::vector<std::string> stops;
   for (const auto& [index, robot] : robots_)
-    if ((robot.busy() && is_ours(index)) || index == ordered)
-      driving += (driving.empty() ? "" : ", ") + robot.name;
+    if ((robot.busy() && is_ours(index)) || index == ordered) {
+      driving.push_back(robot.name);
+      stops.push_back(fmt::format("amiroctl goto {} 0 0", robot.name));
+    }
+  const bool several = driving.size() > 1;
   fail({fmt::format("{}: {}", verb_, answer.failure.what),
-        driving.empty() ? answer.failure.remedy
-                        : fmt::format("{} may still drive: at the latest it stops after {} cm; to stop it: "
-                                      "amiroctl goto {} 0 0",
-                                      driving, mapper::server::longest_leg_cm, driving)});
+        driving.empty()
+            ? answer.failure.remedy
+            : fmt::format("{} may still drive: at the latest {} after {} cm; to stop {}: {}",
+                          fmt::join(driving, ", "), several ? "each stops" : "it stops",
+                          mapper::server::longest_leg_cm, several ? "them" : "it", fmt::join(stops, "; "))});
 }
 
 void JoinedLine::tell(std::string_view request) {

@@ -308,7 +308,8 @@ void stand_in(Session& session, const ReplayOptions& options, int& exit_code) {
     log.complain();
   }
   if (robot.samples() == 0)
-    fail({fmt::format("{} has no sample of {}: nothing could be answered", options.file,
+    fail({fmt::format("{} has no sample of {}: nothing could be answered",
+                      options.file == "-" ? "the standard input" : options.file,
                       options.topics.empty() ? "a sensor" : "these topics"),
           options.topics.empty() ? "is --spec that of the robot that was recorded?"
                                  : "name others, or none: then all that it has is answered"});

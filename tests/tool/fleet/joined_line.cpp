@@ -176,6 +176,22 @@ TEST_CASE("joined line: without the owner those are named that may drive because
                                           : "\n          was it stopped (Ctrl-Z; `fg` lets it go on), or has "
                                             "it ended?\n"));
   }
+  // A map sends several.
+  {
+    const PlayedOwner of_two{
+        {"ok\nmap", "ok\nidle\n" + row(0, "A") + row(1, "B"), "ok\n5",
+         "ok\nidle\n" + row(0, "A", 5, Progress::said) + row(1, "B"), "ok\n7",
+         "ok\nidle\n" + row(0, "A", 5, Progress::said) + row(1, "B", 7, Progress::heard)}};
+    const auto both = leaving([] {
+      JoinedLine line = PlayedOwner::joined();
+      CHECK_FALSE(line.go(0, {90, 50}));
+      CHECK_FALSE(line.go(1, {90, 50}));
+      line.exchange();
+    });
+    CHECK_THAT(both.text,
+               Catch::EndsWith("\n          A, B may still drive: at the latest each stops after 60 cm; to "
+                               "stop them: amiroctl goto A 0 0; amiroctl goto B 0 0\n"));
+  }
   // It may have had the order, to which it said nothing any more.
   const PlayedOwner owner{{"ok\nmap", "ok\nidle\n" + row(0, "A") + row(1, "B")}};
   const auto left = leaving([] { static_cast<void>(PlayedOwner::joined().go(1, {90, 50})); });

@@ -696,7 +696,7 @@ act,sampled,2000000,2000,21005000
         self.assertEqual(self.chain(self.HOPS + f"a,,sampled,1,,{2**63 - 1}\n", code=1), {
             "latency_ns": None, "shortest_ns": None, "age_ns": None, "deadline_ns": None, "schedulable": False,
             "hops": [{"name": "a", "activation": "sampled", "waits_ns": None, "responds_ns": None, "until_ns": None}],
-            "why": "no bound: no bound found: its busy period is longer than the limits of the analysis"})
+            "why": "no bound found: its busy period is longer than the limits of the analysis"})
 
     def test_what_samples_has_the_jitter_of_its_set(self):
         self.file(TASKS + "read,2,1000,1000000,,250,\n", "cpu.csv")
