@@ -479,6 +479,22 @@ TEST_CASE("drive: while a question is held up it waits between two looks") {
   CHECK(looks < 10'000);  // some ten for each millisecond
 }
 
+TEST_CASE("run: where less than 40 ms are left to listen no board is asked: an answer takes that long") {
+  const Silence silence;
+  for (const auto& [left, asks] : {std::pair{39ms, false}, std::pair{40ms, true}, std::pair{100ms, true}}) {
+    INFO(left.count() << " ms are left");
+    World world{1};
+    PlayedBus bus{world, {}};
+    Timeline timeline{bus, amiro::catalogue, "run", Timeline::Others::refused, cli::Confirm::no, {}};
+    CHECK(timeline.listen_first(left));
+    const Duration listened = world.now() - World::start;
+    CHECK(listened >= left);
+    CHECK(listened < left + 2ms);
+    CHECK(timeline.has_asked() == asks);
+    CHECK(bus.sent().empty() != asks);
+  }
+}
+
 TEST_CASE("drive: set points that come while the question is held up are as old as they are") {
   const Silence silence;
   can::Frame theirs = drive(1s).frames.front();

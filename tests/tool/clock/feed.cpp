@@ -264,4 +264,22 @@ TEST_CASE("frame clock: a frame waits less than a second, or its clock is anothe
   CHECK(apart(-1s) == -1s);
 }
 
+TEST_CASE("live feed: its time is that of its frames, where they do not follow the wall clock") {
+  World world{1};
+  world.set_wall_clock(World::start + 5ms, 1h);
+  world.set_wall_clock(World::start + 50ms, -1h);
+  const base::Time begin = world.wall_at(World::start);
+  PlayedBus::Conditions conditions;
+  conditions.incoming.push_back({World::start + 10ms, can::Frame{.id = 0x7F0, .dlc = 1}});
+  cli::bus_model::LiveFeed feed{std::make_unique<PlayedBus>(world, conditions, "no-such-bus")};
+  cli::bus_model::Models models{amiro::catalogue, 500'000};
+  CHECK(is_about(feed.now(), begin));
+  world.pass(12ms);
+  CHECK(feed.pump(models) == cli::Over::time);
+  CHECK(models.of("no-such-bus").summary(feed.now()).frames == 1);
+  world.pass(100ms);  // the wall clock is set back meanwhile, and the bus has said nothing of that
+  CHECK(is_about(cli::unix_time(), begin + 112ms));
+  CHECK(is_about(feed.now(), begin + 1h + 110ms));
+}
+
 }  // namespace tool_clock_feed_test

@@ -590,6 +590,29 @@ TEST_CASE("recorder: what an older recording left is not counted as what can be 
   CHECK(read_file(options.path, "candump").entries.size() == 2);
 }
 
+TEST_CASE(
+    "recorder: where no next file can be made, what is in those before can be read, and is counted once") {
+  const Silence silence;
+  const Folder folder;
+  const World world{1};
+  record::FilesOptions options = to_one_file(folder);
+  options.overwrite = true;
+  options.split.size = 1;
+  const std::string next = record::numbered({folder / "run", std::string{options.format->ending}}, 2);
+  std::filesystem::create_directory(next);
+  record::Files files{options, amiro::catalogue};
+  REQUIRE(files.open().ok());
+  log::Interfaces interfaces;
+  interfaces.number("can0");
+  const std::vector<log::Entry> entries(3, log::Entry{base::Time{1s}, can::Frame{0x601, 4, {}}});
+  REQUIRE(files.write(entries, interfaces, 0s));
+  CHECK_FALSE(files.write(entries, interfaces, 0s));
+  CHECK_FALSE(files.finish());
+  CHECK_THAT(files.failure().what, Catch::Contains(next + ": Is a directory"));
+  CHECK(files.count() == 1);
+  CHECK(files.readable() == entries.size());
+}
+
 TEST_CASE("recorder: a file that a ring cannot delete is said, and one that is gone already is not") {
   const Folder folder;
   const World world{1};

@@ -21,6 +21,9 @@
 
 #include "ocm/host/descriptor.hpp"
 
+#include "cli/shared/messages.hpp"
+#include "tests/tool/captured.hpp"
+
 namespace fleet_dongle_test {
 
 using namespace std::chrono_literals;
@@ -111,6 +114,22 @@ TEST_CASE("dongle: it has 600 ms to answer, and 100 ms to take the end of what i
   CHECK(std::chrono::steady_clock::now() - begin >= 700ms);
   CHECK(dongle.dialect == Dialect::at);
   CHECK(dongle.heard == "OK.");
+}
+
+TEST_CASE("dongle: one that says nothing is asked what each kind would answer, and has 600 ms for each") {
+  Device device;
+  cli::fleet::DongleOptions options;
+  options.baud = 38'400;
+  const auto begin = std::chrono::steady_clock::now();
+  const auto left =
+      test::leaving([&] { static_cast<void>(cli::fleet::open_dongle("robots", device.path, options)); });
+  // And 100 ms to take the end of what it holds.
+  CHECK(std::chrono::steady_clock::now() - begin >= 1900ms);
+  CHECK(left.code == cli::exit_failure);
+  CHECK_THAT(left.text, Catch::StartsWith("amiroctl: robots: nothing at " + device.path +
+                                          " answers as a central does, at 38400 baud\n"));
+  const std::string asked = "*\nstop\n.AT?.\nlist\n";
+  CHECK(device.heard(asked) == asked);
 }
 
 TEST_CASE("dongle: a line that says something else, and one that does not end, are no answer of ours") {

@@ -1,6 +1,7 @@
 #include "cli/serve/bounds.hpp"
 
 #include <chrono>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -135,6 +136,22 @@ TEST_CASE("bounds: what was measured is how far behind its grid a frame came, an
   desk.bounds.assume({});
   CHECK(desk.rows().empty());
   desk.take(200ms, gyroscope, {1, 2, 3, 4, 5, 6});
+}
+
+TEST_CASE("bounds: what is a microsecond beyond its bound is not, as the times of frames are no finer") {
+  const auto measured = [](base::Duration late) {
+    Desk desk;
+    desk.bounds.assume(std::vector{row("gyroscope", 50ms)});
+    desk.take(0ms, gyroscope, {1, 2, 3, 4, 5, 6});
+    desk.take(50ms + late, gyroscope, {1, 2, 3, 4, 5, 6});
+    return Json(desk.rows()[0]);
+  };
+  const auto ns = [](const Json& ms) { return base::Duration{std::llround(ms.get<double>() * 1e6)}; };
+  const Json in_time = measured(0ns);
+  const base::Duration most = ns(in_time["bound_ms"]) - ns(in_time["measured_ms"]) + 1us;
+  CHECK(ns(measured(most)["measured_ms"]) == ns(in_time["bound_ms"]) + 1us);
+  CHECK(measured(most)["exceeds"] == false);
+  CHECK(measured(most + 1ns)["exceeds"] == true);
 }
 
 TEST_CASE("bounds: other frames, and those of other kinds, are of no row") {
