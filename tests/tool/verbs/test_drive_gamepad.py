@@ -117,6 +117,18 @@ class Played(harness.Case):
                 process.send_signal(number)
                 self.assertNotIn("is gone", self.ends(process, 128 + number))
 
+    def test_another_commander(self):
+        """It is heard before the first set point, of zero or not."""
+        other = self.start("drive", "5cm/s")
+        harness.waiting.until(lambda: self.listener.stdout.readline(), "its set points")
+        self.does("drive")
+        refused = subprocess.run([harness.AMIROCTL, "drive", "--gamepad", self.pad], stdin=subprocess.DEVNULL, text=True,
+                                 capture_output=True, env={**self.environment, "LD_PRELOAD": PLAYED}, timeout=60)
+        self.assertEqual((refused.returncode, refused.stdout), (1, ""))
+        self.assertIn("another program commands motors", refused.stderr)
+        _, said = self.interrupt(other)
+        self.assertNotIn("another program", said)
+
     def test_an_output_that_no_program_reads_any_more(self):
         process = self.drive()
         process.stdout.close()
