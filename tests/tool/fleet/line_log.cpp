@@ -142,4 +142,20 @@ TEST_CASE("line log: a file that begins otherwise, or is not there, is none") {
                          "write one\n");
 }
 
+TEST_CASE("line log: a file that cannot be read says why, and what is expected") {
+  const test::TemporaryDirectory folder;
+  const auto read = [](const std::string& path) {
+    return test::leaving([&] { static_cast<void>(cli::fleet::read_line_log("serve", path)); });
+  };
+  const std::string none = folder.file("none.line");
+  const auto missing = read(none);
+  CHECK(missing.code == cli::exit_failure);
+  CHECK(missing.text == "amiroctl: serve: cannot read " + none +
+                            ": No such file or directory\n          expected a log that --record has "
+                            "written\n");
+  CHECK(read(folder.path()).text == "amiroctl: serve: cannot read " + folder.path() +
+                                        ": Is a directory\n          expected a log that --record has "
+                                        "written\n");
+}
+
 }  // namespace fleet_line_log_test

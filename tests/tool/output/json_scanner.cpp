@@ -112,7 +112,7 @@ TEST_CASE(
     CHECK_FALSE(value);
     CHECK(scanner.at_end());
   }
-  for (const std::string_view word : {"True", "nul", "+1", ".5", "a"}) {
+  for (const std::string_view word : {"", " \t\r", "True", "nul", "+1", ".5", "a"}) {
     CAPTURE(word);
     JsonScanner scanner{word};
     JsonValue value;

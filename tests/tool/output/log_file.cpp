@@ -4,7 +4,10 @@
 #include <array>
 #include <cerrno>
 #include <chrono>
+#include <climits>
 #include <csignal>
+#include <cstddef>
+#include <cstdio>
 #include <cstdlib>
 #include <fcntl.h>
 #include <filesystem>
@@ -17,7 +20,10 @@
 #include <string>
 #include <string_view>
 #include <sys/resource.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
+#include <sys/syscall.h>
+#include <sys/time.h>
 #include <unistd.h>
 #include <utility>
 #include <vector>
@@ -26,6 +32,8 @@
 
 #include "ocm/topics/amiro.hpp"
 
+#include "cli/shared/interrupt.hpp"
+#include "cli/shared/messages.hpp"
 #include "unit/host/host_testing.hpp"
 
 namespace tool_output_log_file_test {
@@ -61,6 +69,17 @@ class Limited {
  private:
   void (*handler_)(int);
   rlimit before_{};
+};
+
+/// A disk that gives none of the room that it is asked for while it lives, and why. It takes what is written
+/// all the same.
+class WithoutRoom {
+ public:
+  static inline int error = 0;
+  explicit WithoutRoom(int why) { error = why; }
+  ~WithoutRoom() { error = 0; }
+  WithoutRoom(const WithoutRoom&) = delete;
+  WithoutRoom& operator=(const WithoutRoom&) = delete;
 };
 
 std::unique_ptr<LogFile> created(const std::string& path, Existing existing = Existing::refuse) {
@@ -406,4 +425,126 @@ TEST_CASE("log file: what cannot be made is refused, and nothing is made behind 
   CHECK(content(path) == one_line);
 }
 
+TEST_CASE("log file: a new one is opened once, whatever failed before") {
+  const Folder folder;
+  const std::string path = folder.file("a.log");
+  const int descriptor = next_descriptor();
+  errno = EEXIST;
+  const auto file = created(path);
+  CHECK(file->finish());
+  CHECK(next_descriptor() == descriptor);
+}
+
+TEST_CASE("log file: a disk that is full has no room, and one that cannot say has some") {
+  const Folder folder;
+  const auto file = created(folder.file("a.log"));
+  for (const int error : {ENOSPC, EDQUOT, EOPNOTSUPP, EINTR}) {
+    CAPTURE(error);
+    const WithoutRoom disk{error};
+    CHECK(file->has_room() == (error != ENOSPC && error != EDQUOT));
+  }
+  const WithoutRoom disk{ENOSPC};
+  CHECK(created("/dev/null")->has_room());  // it is on none
+}
+
+TEST_CASE("log file: what was there stays where the disk has no room for the new log; a new one is written") {
+  const Folder folder;
+  const std::string path = folder.file("a.log"), fresh = folder.file("b.log");
+  std::ofstream{path} << "old";
+  {
+    const auto file = created(path, Existing::overwrite);
+    CHECK(write(*file));
+    const WithoutRoom disk{ENOSPC};
+    CHECK_FALSE(file->finish());
+    CHECK(file->failure().what == "cannot write " + path + ": No space left on device");
+    CHECK(file->failure().remedy == std::string{"free some space; "} + nothing_kept);
+  }
+  CHECK(content(path) == "old");
+  {
+    const auto file = created(fresh);
+    CHECK(write(*file));
+    const WithoutRoom disk{ENOSPC};
+    CHECK(file->finish());
+  }
+  CHECK(content(fresh) == one_line);
+}
+
+/// In which pieces a log of so many lines goes to the standard output, which keeps them apart.
+std::vector<std::size_t> pieces(int lines, bool without_signals) {
+  std::array<int, 2> ends{};
+  REQUIRE(::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()) == 0);
+  std::fflush(nullptr);
+  const int kept = ::dup(STDOUT_FILENO);
+  ::dup2(ends[0], STDOUT_FILENO);
+  bool whole = false;
+  if (auto made =
+          LogFile::create("-", *cli::logs::find_format("candump"), amiro::catalogue, Existing::refuse)) {
+    LogFile& file = **made;
+    if (without_signals) file.without_signals();
+    whole = true;
+    for (int i = 0; i < lines; ++i) whole = write(file) && whole;
+    whole = file.finish() && whole;
+  }
+  ::dup2(kept, STDOUT_FILENO);
+  ::close(kept);
+  CHECK(whole);
+  std::vector<std::size_t> sizes;
+  std::string piece(static_cast<std::size_t>(lines) * one_line.size() + 1, '\0');
+  for (;;) {
+    const ssize_t size = ::recv(ends[1], piece.data(), piece.size(), MSG_DONTWAIT);
+    if (size <= 0) break;
+    sizes.push_back(static_cast<std::size_t>(size));
+  }
+  for (const int end : ends) ::close(end);
+  return sizes;
+}
+
+TEST_CASE("log file: a thread that no signal reaches writes to a pipe page by page, others all at once") {
+  REQUIRE(cli::interrupted() == 0);
+  const std::size_t size = 200 * one_line.size();
+  CHECK(pieces(200, false) == std::vector<std::size_t>{size});
+  CHECK(pieces(200, true) == std::vector<std::size_t>{PIPE_BUF, size - PIPE_BUF});
+}
+
+/// What becomes of a log in a process that a signal has reached, and reaches again each millisecond: the exit
+/// code with which that ends; 0: it is made; 1: it is refused in words.
+int behind_a_signal(const std::string& path) {
+  return test::in_child([&path] {
+    ::dup2(::open("/dev/null", O_WRONLY | O_CLOEXEC), STDERR_FILENO);  // what is waited for is said there
+    cli::catch_interrupts();
+    ::raise(SIGTERM);
+    struct sigaction action {};
+    action.sa_handler = [](int) { ::raise(SIGTERM); };
+    ::sigaction(SIGALRM, &action, nullptr);
+    const itimerval each_millisecond{{0, 1000}, {0, 1000}};
+    ::setitimer(ITIMER_REAL, &each_millisecond, nullptr);
+    try {
+      const auto made =
+          LogFile::create(path, *cli::logs::find_format("candump"), amiro::catalogue, Existing::refuse);
+      return made ? 0 : 1;
+    } catch (const cli::Exit& exit) {
+      return exit.code;
+    }
+  });
+}
+
+TEST_CASE(
+    "log file: a signal ends the wait for a pipe's reader, and what cannot be made is refused as ever") {
+  const Folder folder;
+  const std::string pipe = folder.file("pipe");
+  REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
+  CHECK(behind_a_signal(pipe) == 128 + SIGTERM);
+  CHECK(behind_a_signal(folder.file("none/a.log")) == 1);
+  CHECK(behind_a_signal(folder.file("a.log")) == 0);
+}
+
 }  // namespace tool_output_log_file_test
+
+// What is asked of the disk is answered here; its own answer comes from the kernel itself, as in
+// tests/unit/transport/played_kernel.hpp.
+extern "C" int fallocate(int file, int how, off_t from, off_t size) {
+  using tool_output_log_file_test::WithoutRoom;
+  if (WithoutRoom::error == 0) return static_cast<int>(::syscall(SYS_fallocate, file, how, from, size));
+  errno = WithoutRoom::error;
+  return -1;
+}

@@ -144,6 +144,22 @@ class Map(Case):
         self.assertEqual(said(), "map: AVR is lost\n")
         self.interrupt(tool)
 
+    def test_of_two_robots_that_are_lost_each_is_said_once_and_none_is_back(self):
+        arduino = Robot("Arduino", pose=(0.8, 0.5, 0.0))
+        self.central.robots.append(arduino)
+        tool = self.start("map", self.path("a.pgm"), "--watch", "--scan", "200ms", "--start", "AVR=0.4,0.5,0", "--start", "Arduino=0.8,0.5,0")
+
+        def said():
+            return next(line for line in tool.stderr if "is lost" in line or "is back" in line)
+        self.wait_until(lambda: self.avr.confirmed and arduino.confirmed)
+        self.avr.silent = True  # for longer than its deadline
+        self.assertEqual(said(), "map: AVR is lost\n")
+        self.central.drop(arduino)
+        self.assertEqual(said(), "map: Arduino is lost\n")
+        _, err = self.interrupt(tool)
+        self.assertNotIn("is lost", err)
+        self.assertNotIn("is back", err)
+
     def test_a_beam_that_ends_at_another_robot_is_one_of_its_four(self):
         # What it sees at its right is too near to be measured, and is one of the four, too.
         self.avr.x, self.avr.y = 0.5, 0.08
