@@ -108,10 +108,7 @@ class Steering {
     if (key == "q" || key == "\x1b" || key == "\x04") return Ask::quit;
     return Ask::nothing;
   }
-  void release() noexcept {
-    direction_ = {};
-    held_ = false;
-  }
+  void release() noexcept { direction_ = {}; }
 
   [[nodiscard]] Direction direction(base::Duration now) const noexcept {
     return now < until_ ? direction_ : Direction{};

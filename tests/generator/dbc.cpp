@@ -539,6 +539,22 @@ TEST_CASE("dbc: attributes and their defaults") {
   CHECK(file.attributes == std::vector<dbc::Attribute>{{"DBName", "car"}});
 }
 
+TEST_CASE("dbc: what is defined without a default has none, and an empty one says nothing") {
+  for (const char* given :
+       {"", "BA_DEF_DEF_ \"GenMsgSendType\" \"\";\nBA_DEF_DEF_ \"GenSigSendType\" \"\";\n"}) {
+    CAPTURE(given);
+    const Message of = message(
+        "BO_ 1 A: 8 X\n SG_ S : 0|8@1+ (1,0) [0|0] \"\" X\n"
+        "BA_DEF_ BO_ \"GenMsgCycleTime\" INT 0 65535;\nBA_DEF_ BO_ \"GenMsgSendType\" ENUM "
+        "\"Cyclic\",\"OnChange\";\nBA_DEF_ SG_ \"GenSigSendType\" ENUM \"Cyclic\",\"OnChange\";\n" +
+        std::string{given});
+    CHECK_FALSE(of.cycle_ms);
+    CHECK(of.send_type.empty());
+    CHECK(of.attributes.empty());
+    CHECK(of.signals[0].attributes.empty());
+  }
+}
+
 TEST_CASE("dbc: a time of a message is above zero, or there is none") {
   const auto stated = [](const std::string& value) {
     const Message of = message("BO_ 1 A: 8 X\nBA_ \"GenMsgCycleTime\" BO_ 1 " + value +

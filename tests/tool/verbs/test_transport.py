@@ -143,6 +143,13 @@ class Transport(Case):
         self.assertEqual(out.splitlines(), ["time,VI.Absent,CI.End,VI.Last,priority,pgn,source,destination",
                                             "10.150000000,,,26,7,0FEEC,0,255", "20.006000000,,87,,6,0FEEB,0,249"])
 
+    def test_a_plain_frame_has_no_group(self):
+        """A bus has frames of 11 bits beside those of J1939."""
+        with open(self.spec, "a", encoding="utf-8") as file:
+            file.write('BO_ 3 Own: 1 Cab\n SG_ Level : 0|8@1+ (1,0) [0|255] "" Engine\n')
+        out, _ = self.decode("(1.0) can0 003#07\n(2.0) can0 0CF00400#FFFFFFE02E0000FF\n", "--csv")
+        self.assertEqual(out.splitlines()[1:], ["1.000000000,Own,Level,7,,,,,", "2.000000000,EEC1,EngineSpeed,1500,rpm,3,0F004,0,255"])
+
     def test_a_long_group_in_one_frame(self):
         """What fits into one is sent in one: of trouble codes (DM1) there is one, or there are many."""
         log = "(1.0) can0 18FEEC05#5742\n"
