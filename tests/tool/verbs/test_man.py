@@ -152,6 +152,13 @@ class Man(harness.Case):
         self.assertTrue(any(line.startswith("--tick T") for line in page["OPTIONS OF analyse tasks"]))
         self.assertTrue(any("amiroctl(1)" in line for line in page["OPTIONS"]))
 
+    def test_a_page_names_all_the_others(self):
+        verbs = [word.split("\t")[0] for word in self.run_tool("completion", "--words", "--", "")[0].splitlines()[1:]]
+        for page in (None, verbs[0], verbs[-1], "publish"):
+            shown = "".join("".join(rendered(self.run_tool("man", *([page] if page else []))[0])["SEE ALSO"]).split())
+            others = [f"amiroctl-{verb}(1)" for verb in verbs if verb != page]
+            self.assertEqual(sorted(shown.split(",")), sorted((["amiroctl(1)"] if page else []) + others + ["ocm-generate(1)"]), page)
+
     def test_ocm_generate(self):
         tool = os.path.join(os.path.dirname(harness.AMIROCTL), "ocm-generate")
         page = subprocess.run([tool, "--man"], capture_output=True, text=True, check=True).stdout

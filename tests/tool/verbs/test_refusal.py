@@ -115,6 +115,11 @@ class OnARobotThatRefuses(WithAdapter, Case):
             self.assertEqual(self.played.frames.count("20D#02"), 1, (late, self.played.frames))
             self.assertEqual(self.played.frames[-1], REST)
 
+    def test_a_step_of_the_moment_in_which_a_script_asks_goes_first(self):
+        bus = self.robot({})
+        self.run_tool(*bus, "run", self.script("0s led 1 red\n500ms led 2 red\n600ms drive 5cm/s --for 100ms\n"), "--no-confirm")
+        self.assertEqual(self.played.frames[:4], ["23C#FF0000", "23D#FF0000", "20D#02", FORWARDS])
+
     def test_a_script_whose_drive_is_refused_ends(self):
         bus = self.robot({FORWARDS: [refusal(0x01, BAD_LENGTH)]})
         _, err = self.run_tool(*bus, "run", self.script("0s drive 5cm/s\n60s led 1 red\n"), code=1, timeout=50)

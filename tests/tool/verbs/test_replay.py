@@ -158,6 +158,9 @@ class Replaying(Case):
                                   f"amiroctl: replay: no frame of {log} was chosen\n"
                                   f"          `amiroctl stats {log}` shows what it has\n")
         self.start_sim()
+        for loop in (("--loop",), ("--loop", "3")):  # whatever it says: more passes without a frame would take no time, and never end
+            _, err = self.run_tool("replay", log, "accel", *loop, code=1)
+            self.assertRegex(err, r"\nsent 0 frames in \S+, 2 not chosen\namiroctl: replay: no frame of .* was chosen\n")
         _, err = self.run_tool("replay", log, "--interface", "can7=sim", code=1)
         self.assertIn(f"replay: all frames of {log} are of interfaces without a bus\n          name them: --interface LOG=BUS\n", err)
 
