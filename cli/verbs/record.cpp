@@ -134,6 +134,9 @@ std::vector<std::string> bus_names(const std::string& list) {
     const std::size_t end = std::min(list.find(',', begin), list.size());
     names.push_back(list.substr(begin, end - begin));
     begin = end + 1;
+    if (names.back().empty() && !list.empty())
+      fail({fmt::format("record: --bus {} has an empty name", list), "a comma stands between two names"},
+           exit_usage);
     if (std::find(names.begin(), names.end() - 1, names.back()) != names.end() - 1)
       fail({fmt::format("record: --bus {} names {} twice", list, names.back()), "name each bus once"},
            exit_usage);
