@@ -91,6 +91,23 @@ TEST_CASE("agreement: the whole of a map without room around it counts") {
   CHECK(recall({0.05F, 0.05F}, 0.29F) == 1.0);
 }
 
+TEST_CASE("agreement: what is exactly as far as the tolerance is within it, on each side") {
+  // Lengths that a float holds exactly: cells of an eighth of a metre, and a tolerance of two of them.
+  const Map map = ocm::test::map_of({"     ", "     ", "  #  ", "     ", "     "}, 0.125F);
+  for (const Cell cell : {Cell{0, 2}, Cell{4, 2}, Cell{2, 0}, Cell{2, 4}}) {
+    CAPTURE(cell.x, cell.y);
+    const Point p = map.raster().middle(cell);
+    const std::vector<Wall> walls{{p, p}};
+    const Agreement exact = agreement(map, walls, {}, 0.25F);
+    CHECK(exact.occupied == 1);
+    CHECK(exact.precision == 1.0);
+    CHECK(exact.recall == 1.0);
+    const Agreement less = agreement(map, walls, {}, 0.249F);
+    CHECK(less.precision == 0.0);
+    CHECK(less.recall == 0.0);
+  }
+}
+
 TEST_CASE("agreement: the place is what can be reached without crossing a wall") {
   const Map map{options()};
   auto walls = ocm::test::rectangle(0.05F, 0.05F, 1.05F, 1.05F);

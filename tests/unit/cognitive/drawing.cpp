@@ -58,6 +58,22 @@ TEST_CASE("drawing: while a robot turns fast nothing is drawn, and it is counted
   CHECK(drawing.counters().turning == 2);
 }
 
+TEST_CASE("drawing: a turn across 180 degrees is as large as any other") {
+  for (const bool left : {true, false}) {
+    CAPTURE(left);
+    const auto heading = [left](int deg) { return update(static_cast<std::int16_t>(left ? deg : -deg)); };
+    Drawing drawing{MapOptions{}, 6};
+    drawing.take(0, body(), heading(177), {});
+    drawing.take(0, body(), heading(-177), {});
+    CHECK(drawing.counters().drawn == 2);
+    CHECK(drawing.counters().turning == 0);
+    drawing.take(1, body(), heading(177), {});
+    drawing.take(1, body(), heading(-176), {});
+    CHECK(drawing.counters().drawn == 3);
+    CHECK(drawing.counters().turning == 1);
+  }
+}
+
 TEST_CASE("drawing: as it is delivered, up to six degrees between two updates are drawn") {
   Drawing drawing;
   drawing.take(0, body(), update(0), {});

@@ -112,8 +112,8 @@ TEST_CASE("explorer: drives to the next corner of a way, not past it") {
   CHECK(order.set_point.distance <= 40);
 }
 
-TEST_CASE("explorer: a corner nearer than 3 cm is passed by") {
-  // Cells of 2 cm. The robot is closer to the wall than it may come: only the next cell is straight ahead.
+TEST_CASE("explorer: a robot that is closer to a wall than it may come drives away from it") {
+  // Cells of 2 cm.
   std::vector<std::string> rows(20, "#" + std::string(60, '.'));
   rows.insert(rows.begin(), std::string(61, '#'));
   rows.push_back(std::string(61, '#'));
@@ -126,6 +126,58 @@ TEST_CASE("explorer: a corner nearer than 3 cm is passed by") {
   const Order order = explorer.next(0, robots, map, Time{});
   REQUIRE(order.kind == Kind::drive);
   CHECK(order.set_point.distance > 3);
+}
+
+TEST_CASE("explorer: a corner nearer than 3 cm is passed by, and one that is farther is not") {
+  // A corridor three cells wide, of which a robot fits the middle, and one upwards from its end. Where the
+  // robot stands, a cell before the bend, only the cell across the corner is straight ahead.
+  std::vector<std::string> rows(27, "#####...#");
+  rows.insert(rows.end(), {"#.......#", "#.......#", "#.......#", "#########"});
+  const auto first = [&rows](float cell_m) {
+    const Map map = map_of(rows, cell_m);
+    ExplorerOptions near = options();
+    near.view_m = 0.1F;
+    Explorer explorer{near};
+    const std::array robots{scout(0, map, {5, 2})};
+    const Order order = explorer.next(0, robots, map, Time{});
+    REQUIRE(order.kind == Kind::drive);
+    return order.set_point;
+  };
+  // The cell across the corner is 2.83 cm away: it drives to the goal, 2 cm aside and 48 cm up.
+  CHECK(first(0.02F) == SetPoint{88, 48});
+  // 3.54 cm away.
+  CHECK(first(0.025F) == SetPoint{45, 3});
+}
+
+TEST_CASE("explorer: a border is looked at from as far as it may be, and then from nearer by") {
+  const Map map = map_of({"########", "#.......", "########"}, 0.125F);  // lengths that a float holds exactly
+  ExplorerOptions near = options();
+  near.view_m = 0.25F;
+  near.arrive_m = 0.125F;
+  Explorer explorer{near};
+  std::array robots{scout(0, map, {1, 1})};
+  CHECK(explorer.next(0, robots, map, Time{}).kind == Kind::drive);
+  REQUIRE(explorer.goal(0));
+  CHECK(*explorer.goal(0) == middle_of(map, {5, 1}));
+  // As near as it has to come.
+  robots[0] = scout(0, map, {4, 1});
+  const Order look = explorer.next(0, robots, map, Time{});
+  REQUIRE(look.kind == Kind::look);
+  // The second time from half as far.
+  CHECK(explorer.next(0, robots, map, look.until).kind == Kind::drive);
+  REQUIRE(explorer.goal(0));
+  CHECK(*explorer.goal(0) == middle_of(map, {7, 1}));
+}
+
+TEST_CASE("explorer: where the map shows something a robot sees nothing, and goes where it does") {
+  const Map map = map_of({"#######", "#.#....", "#######"});
+  Explorer explorer{options()};
+  const std::array robots{scout(0, map, {2, 1})};
+  const Order order = explorer.next(0, robots, map, Time{});
+  CHECK(order.kind == Kind::drive);
+  CHECK(order.set_point.angle == 0);
+  REQUIRE(explorer.goal(0));
+  CHECK(*explorer.goal(0) == middle_of(map, {3, 1}));
 }
 
 TEST_CASE("explorer: it looks as long as the border is one, on whichever side, and no longer") {
@@ -253,6 +305,39 @@ TEST_CASE("explorer: what is left is counted by where it is") {
   CHECK(left.known() == Approx(0.9));
   at.range_m = 0.95F;
   CHECK(Explorer{at}.left(map).unseen == 1);
+}
+
+TEST_CASE("explorer: a border exactly as far as the range is within it, and may be driven to") {
+  const Map map = map_of({"######", "#.....", "######"}, 0.125F);  // lengths that a float holds exactly
+  ExplorerOptions at = options();
+  at.home = middle_of(map, {1, 1});
+  at.view_m = 0.01F;
+  at.range_m = 0.5F;  // so far is the border
+  Explorer explorer{at};
+  const Left left = explorer.left(map);
+  CHECK((left.out_of_range == 0 && left.bad_link == 0 && left.unseen == 1));
+  std::array robots{scout(0, map, {1, 1})};
+  CHECK(explorer.next(0, robots, map, Time{}).kind == Kind::drive);
+  REQUIRE(explorer.goal(0));
+  CHECK(*explorer.goal(0) == middle_of(map, {5, 1}));
+  // A range that is left of a bad link ends there, too.
+  at.range_m = ExplorerOptions{}.range_m;
+  Explorer called{at};
+  robots[0] = scout(0, map, {5, 1});
+  robots[0].call_back = true;
+  (void)called.next(0, robots, map, Time{});
+  REQUIRE(called.range_m() == 0.5F);
+  const Left behind = called.left(map);
+  CHECK((behind.out_of_range == 0 && behind.bad_link == 0 && behind.unseen == 1));
+  // With home a cell farther away it is beyond.
+  at.home = middle_of(map, {0, 1});
+  const Left beyond = [&] {
+    Explorer other{at};
+    (void)other.next(0, robots, map, Time{});
+    CHECK(other.range_m() == 0.5F);
+    return other.left(map);
+  }();
+  CHECK((beyond.out_of_range == 0 && beyond.bad_link == 1 && beyond.unseen == 0));
 }
 
 TEST_CASE("explorer: as it is delivered, a border is looked at from 45 cm, in pieces of 60 cm at most") {
@@ -392,6 +477,37 @@ TEST_CASE("explorer: what stopped it is remembered, and the next way leads aroun
   CHECK(distance_m(Wall{place(robots[0].body.pose), to}, stop) > 0.02F);
 }
 
+TEST_CASE("explorer: what stopped it the last 64 times is remembered, and what did before is not") {
+  // A dead end of five cells, open to a hall. What stops a robot in the middle of it is in the way of one at
+  // its end.
+  std::vector<std::string> rows(21, "######" + std::string(21, '.'));
+  rows[10] = "#" + std::string(26, '.');
+  const Map map = map_of(rows, 0.10F, 2000);  // without room around it
+  ExplorerOptions near = options();
+  near.view_m = 0.15F;
+  near.most_tries = 1000;
+  Explorer explorer{near};
+  const auto stop_at = [&](Cell at, unsigned times) {
+    const std::array robots{scout(0, map, at)};
+    explorer.forget(0);
+    for (int i = 0; i < 1000 && explorer.counters().stalled < times; ++i)
+      (void)explorer.next(0, robots, map, Time{});
+    REQUIRE(explorer.counters().stalled == times);
+  };
+  const auto leaves = [&] {
+    const std::array robots{scout(0, map, {1, 10})};
+    explorer.forget(0);
+    return explorer.next(0, robots, map, Time{}).kind == Kind::drive;
+  };
+  CHECK(leaves());
+  stop_at({2, 10}, 1);
+  CHECK_FALSE(leaves());
+  stop_at({16, 10}, 64);
+  CHECK_FALSE(leaves());
+  stop_at({16, 10}, 65);
+  CHECK(leaves());
+}
+
 TEST_CASE(
     "explorer: as it is delivered, goals of two robots are 60 cm apart, and not much more where there is no "
     "room") {
@@ -461,6 +577,20 @@ TEST_CASE("explorer: who is in a tall map goes home as well as in a wide one") {
   REQUIRE(order.kind == Kind::drive);
   CHECK(order.set_point.angle == -90);
   CHECK(order.set_point.distance >= 100);
+}
+
+TEST_CASE("explorer: home may be anywhere") {
+  const Map map = map_of({"####################", "#..................", "####################"});
+  ExplorerOptions at = options();
+  at.home = middle_of(map, {5, 1});
+  Explorer explorer{at};
+  std::array robots{scout(0, map, {15, 1})};
+  robots[0].call_back = true;
+  const Order order = explorer.next(0, robots, map, Time{});
+  REQUIRE(order.kind == Kind::drive);
+  CHECK(std::abs(order.set_point.angle) == 180);
+  CHECK(order.set_point.distance >= 99);
+  CHECK(order.set_point.distance <= 100);
 }
 
 TEST_CASE("explorer: a robot without a goal waits while another has one, and is done when none has") {
@@ -536,6 +666,27 @@ TEST_CASE("explorer: no way leads past a robot in a corridor; once it has gone, 
   robots.pop_back();
   blocked.forget(1);
   CHECK(blocked.next(0, robots, map, Time{}).kind == Kind::drive);
+}
+
+TEST_CASE("explorer: no way crosses the one that another robot is about to take, unless that one is lost") {
+  // Two corridors that cross: one upwards at 10, one to the right at 5, open at their ends.
+  std::vector<std::string> rows(14, std::string(31, '#'));
+  for (std::size_t row = 0; row < 13; ++row) rows[row][10] = '.';
+  for (std::size_t column = 1; column < 31; ++column) rows[8][column] = '.';
+  const Map map = map_of(rows);
+  ExplorerOptions near = options();
+  near.view_m = 0.2F;
+  Explorer explorer{near};
+  std::array robots{scout(0, map, {1, 5}), scout(1, map, {10, 1})};
+  REQUIRE(explorer.next(1, robots, map, Time{}).kind == Kind::drive);
+  REQUIRE(explorer.goal(1));
+  CHECK(*explorer.goal(1) == middle_of(map, {10, 12}));
+  // It stands aside still, but will come.
+  CHECK(explorer.next(0, robots, map, Time{}).kind == Kind::wait);
+  CHECK(explorer.counters().blocked == 1);
+  robots[1].lost = true;
+  CHECK(explorer.next(0, robots, map, Time{}).kind == Kind::drive);
+  CHECK(explorer.counters().blocked == 1);
 }
 
 TEST_CASE("explorer: a robot that is called back goes home, and no goal is so far away again") {

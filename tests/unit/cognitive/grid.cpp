@@ -84,6 +84,15 @@ TEST_CASE("grid: grows to what is touched, keeps what was there, and no further 
   CHECK(small.reach({7, 7}) == nullptr);
 }
 
+TEST_CASE("grid: there is room for 32 cells around what is touched, as long as that is within the bound") {
+  Grid<char> all{0, 65 * 65};
+  REQUIRE(all.reach({3, -4}) != nullptr);
+  CHECK(all.box() == Box{{-29, -36}, {35, 28}});
+  Grid<char> less{0, 65 * 65 - 1};
+  REQUIRE(less.reach({3, -4}) != nullptr);
+  CHECK(less.box() == Box{{3, -4}, {3, -4}});
+}
+
 TEST_CASE("grid: cells of a line by hand") {
   const Raster raster{1.0F};
   CHECK(line(raster, {0.5F, 0.5F}, {3.5F, 0.5F}) == std::vector<Cell>{{0, 0}, {1, 0}, {2, 0}, {3, 0}});

@@ -198,6 +198,26 @@ TEST_CASE("map: where a robot stands is free, within its inner circle around the
   }
 }
 
+TEST_CASE("map: the border of a robot's inner circle belongs to it, and bounds of odds to what they bound") {
+  MapOptions wide;
+  wide.resolution_m = 0.25F;  // lengths that a float holds exactly
+  Map stands{wide};
+  Shape shape;
+  shape.width_m = shape.length_m = 0.25F;
+  shape.tower.sensor_out_m.fill(5.0F);  // what it sees is elsewhere
+  // Between two cells: the middle of each is 12.5 cm away.
+  REQUIRE(stands.take({{0.0F, 0.125F, 0.0F}, shape}, {0, 0, 0, 0, 9, 9, 9, 9}));
+  for (const int x : {-1, 0}) CHECK(stands.log_odds({x, 0}) == Approx(-0.2F));
+  for (const int x : {-2, 1}) CHECK(stands.log_odds({x, 0}) == 0.0F);
+  MapOptions options = cells_of_10_cm();
+  options.occupied_from = options.beam.hit;
+  options.free_below = options.beam.pass;
+  Map map{options};
+  REQUIRE(map.take({middle, {}}, {0, 0, 0, 0, 36, 0, 0, 0}));
+  CHECK(map.state({4, 0}) == CellState::occupied);
+  CHECK(map.state({2, 0}) == CellState::free);
+}
+
 TEST_CASE("map: one sharp look is enough for a wall; a beam frees what its width touches") {
   Map map{cells_of_10_cm()};
   map.take({middle, {}}, {0, 0, 0, 0, 36, 0, 0, 0});
@@ -338,6 +358,23 @@ TEST_CASE("map: poses that are no place are refused and counted") {
   // Others without a place are ignored.
   const std::array others{Body{{nan, nan, nan}, {}}};
   CHECK(map.take({{0, 0, 0}, {}}, {0, 0, 0, 0, 50, 0, 0, 0}, others));
+}
+
+TEST_CASE("map: a beam that begins or ends beyond the border of the world is counted, and frees nothing") {
+  const Pose border{1000.0F, 0.05F, 0.0F};
+  Map ends{cells_of_10_cm()};
+  REQUIRE(ends.take({border, {}}, {0, 0, 0, 0, 50, 0, 0, 0}));
+  CHECK(ends.counters() == MapCounters{.updates = 1, .hits = 1, .nothing = 3, .outside = 1});
+  CHECK(ends.log_odds(ends.raster().cell({1000.35F, 0.05F})) == 0.0F);
+  CHECK(ends.log_odds(ends.raster().cell({1000.5F, 0.05F})) == 0.0F);
+  CHECK(ends.log_odds(ends.raster().cell({999.65F, 0.05F})) == Approx(-0.1F));
+  // From a tower ahead of the border each beam begins beyond it, the one backwards, too.
+  Shape shape;
+  shape.tower.ahead_of_axle_m = 0.2F;
+  Map begins{cells_of_10_cm()};
+  REQUIRE(begins.take({border, shape}, {}));
+  CHECK(begins.counters() == MapCounters{.updates = 1, .nothing = 4, .outside = 4});
+  CHECK(begins.log_odds(begins.raster().cell({999.65F, 0.05F})) == 0.0F);
 }
 
 TEST_CASE("map: its size is bounded") {

@@ -208,6 +208,27 @@ TEST_CASE("mapping: a robot that has nothing to do is asked again after a second
   CHECK(expedition.mapping.done());
 }
 
+TEST_CASE("mapping: a robot that looks is asked when its look ends, be that before a second is over") {
+  MappingOptions options;
+  options.explorer.view_m = 1.0F;  // all of the border is seen from where it stands
+  options.explorer.look = 400ms;
+  Expedition expedition{Room{}, {PerfectRobot{{0, 0, 0}}}, {}, options};
+  for (int times = 0; times < 4; ++times)
+    for (int servo = 0; servo <= 90; servo += 2)
+      expedition.say(0, "{U,0,0,0," + std::to_string(servo) + ",0,0,0,0}\n");
+  expedition.say(0, "{S,IDL}\n");
+  expedition.say(0, "{U,0,0,0,0,0,0,0,0}\n");
+  expedition.mapping.step(expedition.now);
+  const auto& explorer = expedition.mapping.explorer();
+  CHECK(explorer.counters() == ExplorerCounters{.goals = 1});
+  expedition.now += 399ms;
+  expedition.mapping.step(expedition.now);
+  CHECK(explorer.counters().reached == 0);
+  expedition.now += 1ms;
+  expedition.mapping.step(expedition.now);
+  CHECK(explorer.counters().reached == 1);
+}
+
 TEST_CASE("mapping: a robot far from the central is called back at once, and does not go there again") {
   FleetOptions options;
   options.range_m = 2.0F;  // from 1.8 m on

@@ -125,6 +125,24 @@ TEST_CASE("server: words for which there is no room are as if the air had lost t
   CHECK(server.fleet().counters().words == 2);
 }
 
+TEST_CASE("server: a central with more robots than the fleet has room for is refused") {
+  const auto list = [](unsigned most, unsigned index) {
+    Server server{{}, {.most_robots = most}};
+    const Time now{1s};
+    REQUIRE(server.client().scan(0s));
+    server.expire(now);
+    server.feed("found 0\n", now);  // it was stopped, whatever it did before
+    server.feed("found 1\n" + std::to_string(index) + ":C0000000000A:AVR\nend of list\n", now);
+    const auto event = server.next_event();
+    REQUIRE(event);
+    return event->kind == ocm::mapper::server::CentralEvent::Kind::listed ? "listed" : event->words;
+  };
+  CHECK(list(256, 127) == "listed");
+  CHECK(list(256, 128) == "the central lists robot 128, and 128 is the most");
+  CHECK(list(128, 128) == "the central lists robot 128, and 128 is the most");
+  CHECK(list(2, 2) == "the central lists robot 2, and 2 is the most");
+}
+
 TEST_CASE("server: of a central that is silent it is known at once what has failed") {
   Server server;
   REQUIRE(server.client().connect(0));
