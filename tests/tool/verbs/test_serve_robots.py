@@ -299,7 +299,6 @@ class Robots(Case):
         second.publish("/ocm/fleet", {"robot": "Arduino", "x_m": 0.8, "y_m": 0.7})
         for robot in (self.avr, self.arduino):
             waiting.until(lambda: any(line.startswith("{U,") for line in robot.heard), "they drive")
-        time.sleep(0.5)  # both have been heard by then
         before = len(self.arduino.heard)
         viewer.close()
         waiting.until(lambda: self.avr.heard[-1] == "{U,0,0}", "its robot is stopped")
