@@ -38,7 +38,7 @@ struct ExplorerOptions {
   float apart_m = 0.60F;           ///< between the goals of two robots
   std::size_t least_unknown = 16;  ///< cells: smaller holes between beams are no goal
   std::size_t least_gain = 3;      ///< border cells: fewer are no goal
-  unsigned most_tries = 3;         ///< looks at a border cell
+  std::uint8_t most_tries = 3;     ///< looks at a border cell
   unsigned most_pieces = 30;       ///< on the way to one goal
   float grow_m = 0.5F;             ///< by so much the range grows again behind a call
   unsigned most_fruitless = 6;     ///< so often without a goal that was reached

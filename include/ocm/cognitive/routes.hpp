@@ -101,11 +101,7 @@ class Terrain {
     border[1] = far;
     for (std::size_t q = 1; q < n; ++q) {
       float s = crossing(q, at[k]);
-      while (k > 0 && s <= border[k]) s = crossing(q, at[--k]);
-      if (s <= border[k]) {  // the first one, too, is beaten everywhere
-        at[0] = q;
-        continue;
-      }
+      while (k > 0 && s <= border[k]) s = crossing(q, at[--k]);  // none is as low as border[0]
       at[++k] = q;
       border[k] = s;
       border[k + 1] = far;

@@ -108,6 +108,27 @@ TEST_CASE("agreement: what is exactly as far as the tolerance is within it, on e
   }
 }
 
+TEST_CASE("agreement: a cell of two walls counts once, and a wall that is no place has none") {
+  const Map map{options()};
+  auto walls = ocm::test::rectangle(0.05F, 0.05F, 1.05F, 1.05F);  // 11 by 11 cells around
+  CHECK(agreement(map, walls, {}).wall_cells == 40);
+  walls.push_back({{0.55F, 0.05F}, {0.55F, 1.05F}});  // 11, of which both ends are there already
+  CHECK(agreement(map, walls, {}).wall_cells == 49);
+  walls.push_back({{0.55F, 0.55F}, {2000.0F, 0.55F}});
+  walls.push_back({{0.55F, -2000.0F}, {0.55F, 0.55F}});
+  CHECK(agreement(map, walls, {}).wall_cells == 49);
+}
+
+TEST_CASE("agreement: one number of two shares, be they small") {
+  Agreement some;
+  CHECK(some.occupied + some.wall_cells + some.area_cells == 0);
+  some.precision = 0.25;
+  some.recall = 0.5;
+  CHECK(some.f1() == Approx(1.0 / 3.0));
+  some.precision = some.recall = 0.0;
+  CHECK(some.f1() == 0.0);
+}
+
 TEST_CASE("agreement: the place is what can be reached without crossing a wall") {
   const Map map{options()};
   auto walls = ocm::test::rectangle(0.05F, 0.05F, 1.05F, 1.05F);

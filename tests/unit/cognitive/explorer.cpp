@@ -271,6 +271,11 @@ TEST_CASE("explorer: a hole counts from its least size on, however it lies, at t
   const Explorer explorer{options()};
   CHECK(explorer.left(tight).edge == 8);
   CHECK(explorer.left(tight).unseen == 8);
+  // Around a single cell there are eight.
+  const Map one = map_of({"."}, 0.10F, 1);
+  REQUIRE(one.box() == Box{{0, 0}, {0, 0}});
+  CHECK(frontiers(one, 8).size() == 1);
+  CHECK(frontiers(one, 9).empty());
 }
 
 TEST_CASE("explorer: goals are looked for in all of a map, be it wide or tall") {
@@ -485,7 +490,7 @@ TEST_CASE("explorer: what stopped it the last 64 times is remembered, and what d
   const Map map = map_of(rows, 0.10F, 2000);  // without room around it
   ExplorerOptions near = options();
   near.view_m = 0.15F;
-  near.most_tries = 1000;
+  near.most_tries = 255;
   Explorer explorer{near};
   const auto stop_at = [&](Cell at, unsigned times) {
     const std::array robots{scout(0, map, at)};
@@ -737,6 +742,49 @@ TEST_CASE("explorer: behind a bad link the range grows again, until that has led
   CHECK(left.bad_link > 0);
   CHECK(left.out_of_range == 0);
   CHECK(left.known() < 1);
+}
+
+TEST_CASE("explorer: behind a goal that was reached the range grows again as often as before") {
+  const Map map = map_of({"####################", "#..................", "####################"});
+  ExplorerOptions at = options();
+  at.home = {0.15F, 0.15F};
+  at.most_fruitless = 1;
+  at.grow_m = 10.0F;
+  Explorer explorer{at};
+  std::array robots{scout(0, map, {12, 1})};
+  const auto called_and_sent = [&] {
+    robots[0] = scout(0, map, {12, 1});
+    robots[0].call_back = true;
+    (void)explorer.next(0, robots, map, Time{});
+    CHECK(explorer.range_m() == Approx(0.9F));
+    robots[0] = scout(0, map, {1, 1});
+    return explorer.next(0, robots, map, Time{}).kind;
+  };
+  CHECK(called_and_sent() == Kind::drive);
+  CHECK(explorer.counters().grown == 1);
+  REQUIRE(explorer.goal(0));
+  robots[0].body.pose = {explorer.goal(0)->x_m, explorer.goal(0)->y_m, 0.0F};
+  const Order look = explorer.next(0, robots, map, Time{});
+  REQUIRE(look.kind == Kind::look);
+  (void)explorer.next(0, robots, map, look.until);
+  REQUIRE(explorer.counters().reached == 1);
+  CHECK(called_and_sent() == Kind::drive);
+  CHECK(explorer.counters().grown == 2);
+  // That one was not reached.
+  CHECK(called_and_sent() == Kind::done);
+  CHECK(explorer.counters().grown == 2);
+}
+
+TEST_CASE("explorer: a goal to which there is no way any more is given up, and counted") {
+  const Map open = map_of({"##########", "#.........", "##########"});
+  const Map shut = map_of({"##########", "#..#......", "##########"});
+  Explorer explorer{options()};
+  std::array robots{scout(0, open, {1, 1})};
+  CHECK(explorer.next(0, robots, open, Time{}).kind == Kind::drive);
+  robots[0] = scout(0, open, {2, 1});
+  CHECK(explorer.next(0, robots, shut, Time{}).kind == Kind::done);
+  CHECK_FALSE(explorer.goal(0));
+  CHECK(explorer.counters() == ExplorerCounters{.goals = 1, .cut_off = 1, .pieces = 1});
 }
 
 TEST_CASE("explorer: a lost robot does nothing, and is in the way") {

@@ -313,6 +313,53 @@ TEST_CASE("fleet: a link that is new begins a new frame where the robot stands")
   CHECK_FALSE(fleet.robot(0).update);
 }
 
+TEST_CASE("fleet: a new link is trusted, and ends no sentence of the one before") {
+  Fleet fleet;
+  fleet.linked(0, "AVR", second);
+  fleet.feed(ocm::test::listing_15_1, second);
+  REQUIRE(fleet.quality_per_mille(0) < 700);
+  fleet.unlinked(0);
+  fleet.linked(0, "AVR", second + 1s);
+  CHECK(fleet.quality_per_mille(0) == 1000);
+  Fleet other;
+  other.linked(0, "AVR", second);
+  other.feed("[0]:AVR:{U,1,2,3", second);
+  other.unlinked(0);
+  other.linked(0, "AVR", second + 1s);
+  other.feed("[0]:AVR:,0,0,0,0,0}\n", second + 1s);
+  CHECK_FALSE(other.robot(0).update);
+}
+
+TEST_CASE("fleet: how soon an idle is believed is as it was asked for") {
+  for (const auto& [settle, early] : {std::pair<ocm::base::Duration, unsigned>{300ms, 1}, {50ms, 0}}) {
+    FleetOptions options;
+    options.sender.settle = settle;
+    Fleet fleet{options};
+    fleet.feed("[0]:AVR:{S,IDL}\n{U,0,0,0,0,0,0,0,0}\n", second);
+    REQUIRE(fleet.go(0, {90, 50}, second));
+    CHECK(sayings(fleet) == "0:{U,90,50}\n");
+    fleet.out(0, second);
+    fleet.feed("[0]:AVR:{S,IDL}\n", second + 100ms);
+    CHECK(fleet.counters().early_idles == early);
+  }
+}
+
+TEST_CASE("fleet: what was said to two robots at once is not said again at once") {
+  Fleet fleet;
+  for (const std::size_t index : {0U, 1U}) {
+    fleet.linked(index, "R", second);
+    REQUIRE(fleet.stop(index, second));
+  }
+  CHECK(sayings(fleet) == "0:{U,0,0}\n1:{U,0,0}\n");
+  for (const std::size_t index : {0U, 1U}) fleet.out(index, second);
+  std::string again;
+  for (Time now = second; again.empty() && now < second + 1s; now += 1ms) {
+    fleet.expire(now);
+    again = sayings(fleet);
+  }
+  CHECK(again == "0:{U,0,0}\n");
+}
+
 TEST_CASE("fleet: the log of listing 15.1 calls the robot back") {
   Fleet fleet;
   fleet.linked(0, "AVR", second);

@@ -216,6 +216,12 @@ TEST_CASE("map: the border of a robot's inner circle belongs to it, and bounds o
   REQUIRE(map.take({middle, {}}, {0, 0, 0, 0, 36, 0, 0, 0}));
   CHECK(map.state({4, 0}) == CellState::occupied);
   CHECK(map.state({2, 0}) == CellState::free);
+  // What is as near as distances are unsure says nothing of the way there.
+  options.beam.unsure_m = 0.10F;
+  Map unsure{options};
+  REQUIRE(unsure.take({middle, {}}, {0, 0, 0, 0, 10, 10, 10, 10}));
+  CHECK(unsure.log_odds({0, 0}) == Approx(-0.2F));  // because it stands there
+  CHECK(unsure.counters().hits == 4);
 }
 
 TEST_CASE("map: one sharp look is enough for a wall; a beam frees what its width touches") {
@@ -375,6 +381,15 @@ TEST_CASE("map: a beam that begins or ends beyond the border of the world is cou
   REQUIRE(begins.take({border, shape}, {}));
   CHECK(begins.counters() == MapCounters{.updates = 1, .nothing = 4, .outside = 4});
   CHECK(begins.log_odds(begins.raster().cell({999.65F, 0.05F})) == 0.0F);
+}
+
+TEST_CASE("map: as it is delivered there is room for 75 by 75 metres, and not for 90 by 90") {
+  for (const float side : {75.0F, 90.0F}) {
+    Map map;
+    REQUIRE(map.take({{0, 0, 0}, {}}, {}));
+    REQUIRE(map.take({{side, side, 0}, {}}, {}));
+    CHECK((map.counters().outside == 0) == (side < 80.0F));
+  }
 }
 
 TEST_CASE("map: its size is bounded") {

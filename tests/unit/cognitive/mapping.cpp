@@ -145,6 +145,14 @@ TEST_CASE("mapping: what is seen while the robot turns is not drawn") {
   CHECK(expedition.mapping.counters().drawn == 3);
 }
 
+TEST_CASE("mapping: as it is delivered, up to six degrees between two updates are drawn") {
+  Expedition expedition{labyrinth(), {PerfectRobot{{0.4F, 0.4F, 0.0F}}}};
+  for (const char* const heading : {"0", "6", "13"})
+    expedition.say(0, "{U,0,0," + std::string{heading} + ",0,30,0,0,0}\n");
+  CHECK(expedition.mapping.counters().drawn == 2);
+  CHECK(expedition.mapping.counters().turning == 1);
+}
+
 TEST_CASE("mapping: without robots it is not done, and neither is a robot that was not asked") {
   Fleet fleet;
   Mapping mapping{fleet};
@@ -216,10 +224,12 @@ TEST_CASE("mapping: a robot that looks is asked when its look ends, be that befo
   for (int times = 0; times < 4; ++times)
     for (int servo = 0; servo <= 90; servo += 2)
       expedition.say(0, "{U,0,0,0," + std::to_string(servo) + ",0,0,0,0}\n");
+  const auto& explorer = expedition.mapping.explorer();
   expedition.say(0, "{S,IDL}\n");
+  expedition.mapping.step(expedition.now);
+  CHECK(explorer.counters() == ExplorerCounters{});  // where it stands, the next update says
   expedition.say(0, "{U,0,0,0,0,0,0,0,0}\n");
   expedition.mapping.step(expedition.now);
-  const auto& explorer = expedition.mapping.explorer();
   CHECK(explorer.counters() == ExplorerCounters{.goals = 1});
   expedition.now += 399ms;
   expedition.mapping.step(expedition.now);
@@ -280,6 +290,19 @@ TEST_CASE("mapping: to a robot that is lost nothing is said; when it is back it 
   const auto saying = expedition.fleet.take();
   REQUIRE(saying);
   CHECK(saying->words == "{U,0,0}\n");
+}
+
+TEST_CASE("mapping: to a robot that is silent for too long nothing is said, though its link is there") {
+  FleetOptions options;
+  options.range_m = 1.0F;
+  Expedition expedition{Room{ocm::test::rectangle(-1, -1, 4, 1)}, {PerfectRobot{{0, 0, 0}}}, options};
+  expedition.say(0, "{U,95,0,0,0,0,0,0,0}\n");  // drives, too far away
+  expedition.now += 6s;
+  expedition.fleet.expire(expedition.now);
+  REQUIRE(expedition.fleet.robot(0).lost);
+  REQUIRE(expedition.fleet.robot(0).linked);
+  expedition.mapping.step(expedition.now);
+  CHECK_FALSE(expedition.fleet.take());
 }
 
 TEST_CASE("mapping: a handshake that answers another program's question changes nothing") {
@@ -366,10 +389,10 @@ TEST_CASE("mapping: a robot that was called back and gets no better link is done
   expedition.say(0, "{U,0,0,0,0,0,0,0,0}\n");
   expedition.mapping.step(expedition.now);
   CHECK_FALSE(expedition.mapping.done());
-  expedition.now += 9900ms;
+  expedition.now += 9999ms;
   expedition.mapping.step(expedition.now);
   CHECK_FALSE(expedition.mapping.done());
-  expedition.now += 200ms;
+  expedition.now += 1ms;
   expedition.mapping.step(expedition.now);
   CHECK(expedition.mapping.done());
 }
