@@ -40,6 +40,24 @@ constexpr std::array both{Section{0, 1, 1}, Section{0, 2, 1}, Section{2, 1, 8}, 
 static_assert(blocked(both, inherit) == Times{17, 17, 9, 0});
 static_assert(blocked(both, ceil) == Times{9, 9, 9, 0});
 
+// Of equal sections the first is named, and each group has one: here two resources, and one task.
+static_assert([] {
+  constexpr std::array equal{Section{0, 1, 1}, Section{0, 2, 1}, Section{3, 1, 8}, Section{3, 2, 8}};
+  auto tasks = four;
+  std::array<std::uint32_t, 4> scratch{};
+  if (set_blocking(tasks, equal, inherit, scratch) != Table::good) return false;
+  const Blocking first = blocking_of(tasks, equal, scratch, inherit, 0);
+  return first.time == 8 && first.sections == 1 && first.by == 3 && first.section == 2;
+}());
+// A section that takes no time holds up no task.
+static_assert([] {
+  constexpr std::array empty{Section{0, 1, 1}, Section{3, 1, 0}};
+  auto tasks = four;
+  std::array<std::uint32_t, 2> scratch{};
+  return set_blocking(tasks, empty, ceil, scratch) == Table::good && tasks[0].blocking == 0 &&
+         tasks[0].blocked_by == no_index;
+}());
+
 // A resource of less urgent ones alone holds up no task above them; peers are no less urgent.
 static_assert(blocked(std::array{Section{2, 1, 8}, Section{3, 1, 9}}, inherit) == Times{0, 0, 9, 0});
 constexpr auto peers = with_blocking(std::array{Task{9, 99}, Task{9, 99}},
@@ -98,6 +116,13 @@ static_assert(refused(std::array{Section{0, 1, 5}, Section{0, 2, 6, 0}}) == Tabl
 static_assert(refused(std::array{Section{0, 1, 5}, Section{0, 1, 4, 0}}) == Table::bad_nesting);
 static_assert(refused(std::array{Section{0, 1, 5, 0}}) == Table::bad_nesting);
 static_assert(refused(std::array{Section{0, 1, 5}, Section{1, 2, 4, 0}}) == Table::bad_nesting);
+// Inside a later row, one that is not there, or two levels deep in the same resource.
+static_assert(refused(std::array{Section{0, 1, 4, 1}, Section{0, 2, 5}}) == Table::bad_nesting);
+static_assert(refused(std::array{Section{0, 1, 5}, Section{0, 2, 4, 2}}) == Table::bad_nesting);
+static_assert(refused(std::array{Section{0, 1, 5}, Section{0, 2, 4, 0}, Section{0, 1, 3, 1}}) ==
+              Table::bad_nesting);
+// As long as its job, and as what is around it, a section may be.
+static_assert(blocked(std::array{Section{0, 1, 50}, Section{0, 2, 50, 0}}, inherit) == Times{0, 0, 0, 0});
 constexpr std::array crossed{Section{0, 1, 5}, Section{0, 2, 4, 0}, Section{1, 2, 5}, Section{1, 1, 4, 2}};
 static_assert(refused(crossed) == Table::deadlock);
 static_assert(blocked(crossed, ceil) == Times{5, 0, 0, 0});  // a ceiling prevents it

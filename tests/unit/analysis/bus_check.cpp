@@ -122,6 +122,10 @@ TEST_CASE("Of one key the more frequent counts") {
   CHECK(check.asks({.cost = 10, .key = 2}).ok());
   CHECK(check.decide(100).admitted);
   CHECK(check.messages()[0].period == 20);
+  // Of two that are as frequent, the first.
+  CHECK(check.runs({.cost = 12, .period = 20, .key = 1}).ok());
+  CHECK(check.decide(100).admitted);
+  CHECK(check.messages()[0].cost == 10);
 }
 
 TEST_CASE("A set that is too large, and numbers that mean nothing, are refused") {

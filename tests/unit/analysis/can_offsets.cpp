@@ -18,9 +18,9 @@ using namespace ocm::analysis;
 
 template <std::size_t N>
 constexpr std::array<std::int64_t, N> responses(const std::array<Message, N>& set,
-                                                std::int64_t most_releases = 10'000) {
+                                                std::int64_t most_releases = 10'000, const CanBus& bus = {}) {
   CanOffsets<N, 3> analysis;
-  const auto found = analysis.analyse(set, {}, {}, most_releases);
+  const auto found = analysis.analyse(set, bus, {}, most_releases);
   std::array<std::int64_t, N> result{};
   for (std::size_t i = 0; i < N; ++i) result[i] = found[i].response;
   return result;
@@ -43,6 +43,10 @@ static_assert([] {
   late[0].jitter = 50;
   return responses(late)[3];
 }() == 60);
+
+// An error costs an error frame of 31 bits and the longest frame once more: two of the three meet the fourth.
+static_assert(responses(spread, 10'000, {.bit = 1, .errors = {.burst = 1}}) ==
+              std::array<std::int64_t, 4>{91, 111, 131, 111});
 
 struct Release {
   std::int64_t at = 0;
@@ -84,6 +88,41 @@ TEST_CASE("with a node of its own for each message it is the exact analysis; wit
     }
   }
   CHECK(less > 30);
+}
+
+TEST_CASE("offsets: with a node of its own for each message it is the exact analysis, with errors, too") {
+  std::mt19937 random{2007};
+  CanResponse<3> exact;
+  CanOffsets<3, 3> offsets;
+  int bounded = 0;
+  int several = 0;
+  for (int round = 0; round < 300; ++round) {
+    std::array<Message, 3> set;
+    for (std::size_t i = 0; i < 3; ++i)
+      set[i] = {.cost = 50 + static_cast<std::int64_t>(random() % 80),
+                .period = 100 * (6 + static_cast<std::int64_t>(random() % 6)),
+                .jitter = static_cast<std::int64_t>(random() % 2 * (random() % 300)),
+                .node = static_cast<std::uint16_t>(i)};
+    const bool again = random() % 2 == 0;
+    const std::int64_t every = again ? 1'000 + static_cast<std::int64_t>(random() % 1'000) : 0;
+    const CanBus bus{.bit = 2,
+                     .errors = {.burst = 1 + static_cast<std::int64_t>(random() % 2), .every = every}};
+    const auto one = exact.analyse(set, bus);
+    const auto apart = offsets.analyse(set, bus);
+    for (std::size_t m = 0; m < 3; ++m) {
+      CAPTURE(round, m, every);
+      REQUIRE(apart[m].response == one[m].response);
+      REQUIRE(apart[m].reason == one[m].reason);
+      if (!one[m].bounded()) continue;
+      REQUIRE(apart[m].interference == one[m].interference);
+      REQUIRE(apart[m].instance == one[m].instance);
+      REQUIRE(apart[m].instances == one[m].instances);
+      ++bounded;
+      several += one[m].instances > 1 ? 1 : 0;
+    }
+  }
+  CHECK(bounded > 600);
+  CHECK(several > 30);
 }
 
 TEST_CASE("offsets: simulated never exceeds predicted, whatever the phases of the nodes' clocks") {
@@ -167,6 +206,14 @@ TEST_CASE("offsets: what cannot be bounded has a reason") {
   set[3].node = 2;
   CHECK(analysis.analyse(set, {})[0].reason == Reason::bad_input);
   CHECK(analysis.analyse(set, {})[0].largest == 3);
+  set = spread;
+  set[0].node = 2;
+  CHECK(analysis.analyse(set, {})[0].reason == Reason::bad_input);
+  CHECK(analysis.analyse(set, {})[3].largest == 0);
+  CHECK(analysis.analyse(spread, {.bit = -1})[0].reason == Reason::bad_input);
+  CanOffsets<3, 2> small;
+  CHECK(small.analyse(spread, {}).size() == 3);
+  CHECK(small.analyse(spread, {})[0].reason == Reason::bad_input);
   set = spread;
   set[1].offset = -1;
   CHECK(analysis.analyse(set, {})[0].reason == Reason::bad_input);

@@ -27,9 +27,10 @@ constexpr NodeQueue fifo{.kind = Kind::fifo};
 
 template <std::size_t N, std::size_t nodes>
 constexpr std::array<Explained, N> respond(const std::array<Message, N>& set,
-                                           const std::array<NodeQueue, nodes>& queues) {
+                                           const std::array<NodeQueue, nodes>& queues,
+                                           const CanBus& bus = {}) {
   CanQueues<N> analysis;
-  const auto found = analysis.analyse(set, queues, {});
+  const auto found = analysis.analyse(set, queues, bus);
   std::array<Explained, N> results{};
   for (std::size_t i = 0; i < N; ++i) results[i] = found[i];
   return results;
@@ -54,6 +55,22 @@ static_assert(respond(example, std::array{NodeQueue{Kind::mailboxes, 1}, by_prio
 static_assert(respond(example, std::array{NodeQueue{Kind::mailboxes, 2}, by_priority})[0].response == 20);
 static_assert(respond(example, std::array{NodeQueue{Kind::mailboxes, 2}, by_priority})[3] ==
               respond(example, std::array{by_priority, by_priority})[3]);
+
+// Of two that delay it as much, the more urgent one is named.
+static_assert(respond(example, std::array{by_priority, by_priority})[2].largest == 0);
+// An error costs 31 bits and a frame of 10 once more, and one every 80 bits until the end of a's own frame:
+// that is 132, after the second error, and a second b.
+static_assert(respond(example, std::array{fifo, by_priority}, {.bit = 1, .errors = {.burst = 1}})[0]
+                  .response == 40 + 41);
+constexpr CanBus disturbed_often{.bit = 1, .errors = {.burst = 1, .every = 80}};
+static_assert(respond(example, std::array{fifo, by_priority}, disturbed_often)[0].response == 132);
+static_assert(respond(example, std::array{by_priority, by_priority}, disturbed_often)[0].response == 61);
+static_assert(respond(example, std::array{by_priority, by_priority}, disturbed_often)[2].response == 142);
+static_assert(respond(example, std::array{by_priority, by_priority}, disturbed_often)[2].instances == 2);
+// What is queued when a busy period ends begins the next one: it is not looked at.
+constexpr std::array<Message, 1> back_to_back{{{.cost = 5, .period = 5}}};
+static_assert(respond(back_to_back, std::array{fifo})[0].response == 5);
+static_assert(respond(back_to_back, std::array{fifo})[0].instances == 1);
 
 // A later instance can be the worst, in a queue of one as by priority: Davis et al. 2007, table 3, with all
 // times doubled.
@@ -332,6 +349,12 @@ TEST_CASE("queues: what cannot be bounded has a reason") {
   CHECK(analysis.analyse(set, nodes, {})[3].deadline == set[3].due());
   const std::array no_mailbox{NodeQueue{Kind::mailboxes, 0}, fifo};
   CHECK(analysis.analyse(example, no_mailbox, {})[0].reason == Reason::bad_input);
+  CHECK(analysis.analyse(example, no_mailbox, {})[3].largest == 0);
+  set = example;
+  set[0].node = 2;  // the first one counts, too
+  CHECK(analysis.analyse(set, nodes, {})[0].reason == Reason::bad_input);
+  CHECK(analysis.analyse(set, nodes, {})[3].largest == 0);
+  CHECK(analysis.analyse(example, nodes, {.bit = -1})[0].reason == Reason::bad_input);
   CanQueues<2> small;
   CHECK(small.analyse(example, nodes, {})[0].reason == Reason::bad_input);
 }

@@ -29,6 +29,10 @@ static_assert(davis_exact[2].slack() == -250);
 static_assert(davis_exact[2].blocked_by == no_index && davis_exact[1].blocked_by == 2);
 static_assert(can_response_times(davis, {.bit = 8}, CanTest::sufficient)[2].response == 7'000);
 
+// Its own frame before it counts only where it is longer than what blocks it.
+static_assert(can_response_times(davis, {.bit = 8}, CanTest::sufficient)[0].blocked_by == 1);
+static_assert(can_response_times(davis, {.bit = 8}, CanTest::sufficient)[2].blocked_by == 2);
+
 // tau_bit: the third is released again in the very bit in which the message would start.
 constexpr std::array<Message, 3> tau{{
     {.cost = 20, .period = 70},
@@ -67,6 +71,11 @@ constexpr std::array<Message, 2> late{
     {{.cost = 10, .period = 100, .jitter = 95}, {.cost = 10, .period = 100}}};
 static_assert(can_response_times(late)[0].response == 95 + 10 + 10);
 static_assert(can_response_times(late)[1].response == 10 + 10 + 10);
+
+// While the long frame is sent, the short one is released many times: w = 100 + ceil((w + 1) / 3) = 151.
+constexpr std::array<Message, 3> long_frame{
+    {{.cost = 1, .period = 3}, {.cost = 100, .period = 1'000}, {.cost = 1, .period = 1'000}}};
+static_assert(can_response_times(long_frame)[2].response == 151 + 1);
 
 // Errors: a burst of one costs an error frame of 31 bits and the longest frame once more.
 static_assert(can_response_times(tau, {.bit = 1, .errors = {.burst = 1}})[0].response == 55 + 31 + 20);
@@ -301,6 +310,8 @@ TEST_CASE("2048 messages, one of them overloading the bus: all below it are foun
   const auto analysis = std::make_unique<CanResponse<2048>>();
   CHECK(analysis->analyse(set, {})[2047].response == 2048 * 130);
   CHECK(analysis->analyse(set, {})[0].response == 260);
+  // Each level goes on where the one above it has ended: it takes fewer terms than there are messages.
+  CHECK(analysis->analyse(set, {}, CanTest::exact, {.terms = 1'000})[2047].response == 2048 * 130);
   set[1'000].period = 200;
   const auto results = analysis->analyse(set, {});
   CHECK(results[999].bounded());

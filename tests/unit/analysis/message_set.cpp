@@ -65,6 +65,8 @@ static_assert(pose.cost == amiro::Odometry::frames[1].worst_bits[0] * 2'000);
 static_assert(pose.period == 20'000'000 && pose.due() == 20'000'000 && pose.jitter == 5'000);
 static_assert(pose.key == can::arbitration_key({.id = 0x403}));
 
+static_assert(first_clash(std::array{Message{.key = 3}, Message{.key = 3}, Message{.key = 4}}) == 1);
+
 TEST_CASE("a set is ordered as the bus arbitrates, and equal identifiers are noticed") {
   std::array<Message, 4> set{
       {{.cost = 1, .key = 5}, {.cost = 2, .key = 3}, {.cost = 3, .key = 5}, {.cost = 4, .key = 1}}};

@@ -38,6 +38,8 @@ using Twice = Traffic<1, First, Second, First>;  // both of it; the other one wa
 static_assert(Twice::results[0].reason == Reason::bad_input && Twice::results[2].reason == Reason::bad_input);
 static_assert(Twice::results[0].deadline == 200 && Twice::results[2].deadline == 200);
 static_assert(Twice::results[1].response == 300);
+// Of two with one identifier, the one that is named later has its own deadline.
+static_assert(Traffic<1, First, Sent<100, 250, 1>>::results[1].deadline == 250);
 static_assert(!schedulable<Traffic<1, Sent<0, 5, 1>>>);
 
 // A frame of a topic, at the topic's own numbers: 131 bits of 2 us.

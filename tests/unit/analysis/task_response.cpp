@@ -63,6 +63,8 @@ static_assert(beside({.cost = 5, .period = 100, .level = 1}, {.interrupt = 1}) =
 static_assert(beside({.cost = 11, .period = 100, .level = 1}) == Times<2>{10, 19});
 // On a slower processor by nine of 15.
 static_assert(beside({.cost = 5, .period = 100, .level = 1}, {.scale = 1'500'000}) == Times<2>{15, 20});
+// With two switches a job: 6 of 12 are taken, up to six late.
+static_assert(beside({.cost = 5, .period = 100, .level = 1}, {.context_switch = 1}) == Times<2>{12, 13});
 // One that comes six late, and takes nine of its ten then, is done by 16: what it takes may come seven late.
 constexpr Task late_waiting{.cost = 10, .period = 20, .deadline = 16, .jitter = 6, .waits = 1};
 static_assert(responses(std::array{late_waiting, Task{.cost = 5, .period = 100, .level = 1}}) ==
@@ -128,6 +130,9 @@ static_assert([] {
          shares[2] == 0 && low.interference == shares[0] + shares[1] && low.deadline == 30 &&
          low.response == 4 + 1 + 5 + low.interference;  // its worst instance is the first
 }());
+
+// Of two that delay it as much, the one above.
+static_assert(response_times(in_order(std::array{Task{2, 10}, Task{2, 10}, Task{1, 100}}))[2].largest == 0);
 
 // --- what cannot be bounded has a reason ---
 

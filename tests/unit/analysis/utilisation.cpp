@@ -45,6 +45,19 @@ static_assert(utilisation(std::array{Task{most, 1}, Task{most, 1}}).versus_one()
 static_assert(utilisation(std::array{Task{most, 1}, Task{most, 1}}).parts_per_million() == unbounded);
 static_assert(!utilisation(std::array{Task{1, 0}}).valid() && !utilisation(std::array{Task{-1, 5}}).valid());
 static_assert(utilisation(std::array{Task{1, 0}}).versus_one() == Comparison::undecided);
+// Parts per million are rounded up there, too: of nearly nothing to one, of just below 1/64 to 1/64.
+constexpr std::array tiny{Task{1, most}, Task{1, most - 1}};
+static_assert(utilisation(tiny).denominator() == 0 && utilisation(tiny).parts_per_million() == 1);
+constexpr std::array below_a_64th{Task{most / 64 - 100, most - 1}, Task{1, most}};
+static_assert(utilisation(below_a_64th).denominator() == 0);
+static_assert(utilisation(below_a_64th).parts_per_million() == 15'625);
+// Above 1 by less than 62 digits tell; above 2 by as little.
+constexpr std::array just_above{Task{most, most}, Task{1, most - 1}, Task{1, most - 2}};
+static_assert(utilisation(just_above).denominator() == 0);
+static_assert(utilisation(just_above).versus_one() == Comparison::undecided);
+constexpr std::array above_two{Task{most, most}, Task{most, most}, Task{1, most - 1}, Task{1, most - 2}};
+static_assert(utilisation(above_two).denominator() == 0);
+static_assert(utilisation(above_two).versus_one() == Comparison::above);
 
 // [Liu, Layland 1973]: 1, 0.8284, 0.7798, 0.7568, ... ln 2
 static_assert(liu_layland_bound(0) == 0 && liu_layland_bound(1) == 1'000'000);
@@ -72,7 +85,26 @@ static_assert(hyperbolic(in_order(std::array{Task{7, 7}})) == Proof::proven);
 static_assert(liu_layland(in_order(std::array{Task{7, 7}})) == Proof::proven);
 static_assert(liu_layland(in_order(std::array{Task{8, 7}})) == Proof::not_proven);
 static_assert(hyperbolic(in_order(std::array{Task{8, 7}})) == Proof::not_proven);
-static_assert(hyperbolic(in_order(std::array{Task{most, most}, Task{1, most}})) != Proof::proven);
+// Exactly 2, of numbers whose sum has no 63 bits; and above it by less than 62 digits tell.
+static_assert(hyperbolic(in_order(std::array{Task{most, most}})) == Proof::proven);
+static_assert(hyperbolic(in_order(std::array{Task{most, most}, Task{1, most}})) == Proof::undecided);
+
+// Products of 62 binary digits after the point, rounded down or up; 4 and more is beyond.
+static_assert(detail::multiply(detail::one, detail::one, false) == detail::one &&
+              detail::multiply(detail::one, detail::one, true) == detail::one);
+static_assert(detail::multiply(detail::one + 1, detail::one + 1, false) == detail::one + 2);
+static_assert(detail::multiply(detail::one + 1, detail::one + 1, true) == detail::one + 3);
+static_assert(detail::multiply(0x5555'5555'5555'5555, 0x6000'0001'0000'0001, false) == 0x8000'0001'5555'5556);
+static_assert(detail::multiply(0x5555'5555'5555'5555, 0x6000'0001'0000'0001, true) == 0x8000'0001'5555'5557);
+static_assert(detail::multiply(2 * detail::one, 2 * detail::one - 1, false) == detail::beyond - 1);
+static_assert(detail::multiply(2 * detail::one, 2 * detail::one, false) == detail::beyond);
+static_assert(detail::multiply(detail::beyond, detail::one, false) == detail::beyond);
+
+// (1 + load / n) ^ n against 2, where a load is rounded up by a digit: what reaches 2 from below is not above
+// it, what has 2 between its two numbers is not decided, and 2 is not the end while more factors come.
+static_assert(detail::layland_power({detail::one - 1, detail::one - 1}, 1) == Comparison::below);
+static_assert(detail::layland_power({detail::one, detail::one}, 1) == Comparison::undecided);
+static_assert(detail::layland_power({2 * detail::one, 2 * detail::one}, 2) == Comparison::above);
 
 // Where they say nothing.
 static_assert(liu_layland(std::array<Task, 0>{}) == Proof::bad_input);
