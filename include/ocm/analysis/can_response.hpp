@@ -228,7 +228,9 @@ class CanResponse {
       if (m > 0) shared_.add(set_[m - 1]);
 
       const std::int64_t parts = detail::load_parts(message.cost, message.period);
-      if (test_ == CanTest::exact) load_ += parts;  // alone it does not delay its own first instance
+      // Alone it does not delay its own first instance. Once it is overloaded, the sum says no more, and may
+      // not have the room.
+      if (test_ == CanTest::exact && !overloaded) load_ += parts;
       overloaded = overloaded || is_overloaded(m);
       if (overloaded) {
         results_[m].reason = Reason::overloaded;
@@ -236,7 +238,7 @@ class CanResponse {
       } else {
         respond(m, observe);
       }
-      if (test_ == CanTest::sufficient) load_ += parts;
+      if (test_ == CanTest::sufficient && !overloaded) load_ += parts;
       if (parts > heaviest_parts) {
         heaviest_parts = parts;
         heaviest_ = m;

@@ -63,11 +63,16 @@ struct Traffic {
       }
     const auto sorted = can_response_times(set, {.bit = tau_bit});
     std::array<Explained, size> found{};
-    for (std::size_t i = 0; i < size; ++i) found[from[i]] = sorted[i];
+    for (std::size_t i = 0; i < size; ++i) {
+      found[from[i]] = sorted[i];
+      for (std::size_t* other : {&found[from[i]].blocked_by, &found[from[i]].largest})
+        if (*other < size) *other = from[*other];
+    }
     // Two messages of one identifier cannot both be analysed: neither has a place.
     for (std::size_t i = 1; i < size; ++i)
       if (set[i].key == set[i - 1].key)
-        found[from[i]] = found[from[i - 1]] = {.deadline = set[i].due(), .reason = Reason::bad_input};
+        for (const std::size_t k : {i - 1, i})
+          found[from[k]] = {.deadline = set[k].due(), .reason = Reason::bad_input};
     return found;
   }
 

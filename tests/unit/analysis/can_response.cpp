@@ -93,6 +93,10 @@ constexpr std::array<Message, 3> over{
     {{.cost = 10, .period = 20}, {.cost = 10, .period = 20}, {.cost = 1, .period = 1'000'000}}};
 static_assert(can_response_times(over)[0].response == 20);
 static_assert(can_response_times(over)[1].reason == Reason::overloaded);
+// Each asks for four thousand million times what there is: the sum of that has no room in 63 bits.
+constexpr Message all_of_it{.cost = 0xFFFF'FFFF, .period = 1};
+static_assert(can_response_times(std::array<Message, 3>{all_of_it, all_of_it, all_of_it})[2].reason ==
+              Reason::overloaded);
 static_assert(can_response_times(over)[2].reason == Reason::overloaded);
 
 // Of those above, the one that asks for the most is named, also where its frame is long and fills the bus 8
