@@ -237,6 +237,28 @@ TEST_CASE("fleet: a robot that drives out of range stops there; back in range, n
   CHECK(dropped > 0);
 }
 
+TEST_CASE("fleet: in the very moment in which its link ends a robot knows, and its motors are off") {
+  WorldModel model = room({{"AVR", RobotKind::avr, {}}}, 20);
+  model.central.loss_at_range = 0;
+  for (int i = 1; i <= 4; ++i) {  // wherever in the period of its communication that is
+    CAPTURE(i);
+    Server server{model, static_cast<std::uint64_t>(i)};
+    server.begin();
+    server.type("{U,0,1000}\n");
+    server.run(3s + i * 13ms);
+    CHECK(server.fleet.robot(0).application().busy());
+    CHECK(server.fleet.robot(0).application().state() == mapper::app::State::confirmed);
+    server.type("*drop 0\n");
+    const base::Time end = server.fleet.now() + 10s;
+    while (server.fleet.dongle(0).linked() && server.fleet.now() < end)
+      server.fleet.advance_to(server.fleet.next_event());
+    REQUIRE_FALSE(server.fleet.dongle(0).linked());
+    CHECK(server.fleet.robot(0).application().state() == mapper::app::State::advertising);
+    CHECK_FALSE(server.world.robot(0).left().powered());
+    CHECK_FALSE(server.world.robot(0).right().powered());
+  }
+}
+
 TEST_CASE("fleet: equal seeds give equal talks, other seeds others") {
   const auto talk = [](std::uint64_t seed) {
     Server server{

@@ -151,6 +151,35 @@ TEST_CASE("DiWheelDrive: each part that is taken out is missed alone, and found 
   CHECK(b.parts.floor() == b.world.floor());
 }
 
+TEST_CASE("DiWheelDrive: a part that is taken out of the world is missed on the board, and found again") {
+  Bottom b;
+  b.start();
+  using Found = std::array<bool, 4>;
+  const auto found = [&b] {
+    return Found{b.parts.gyroscope().ok(), b.parts.accelerometer().ok(), b.parts.magnetometer().ok(),
+                 b.parts.floor().ok()};
+  };
+  const Found all{true, true, true, true};
+  CHECK(found() == all);
+  constexpr std::array parts{sim::Part::gyroscope, sim::Part::accelerometer, sim::Part::magnetometer,
+                             sim::Part::floor};
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    CAPTURE(i);
+    Found others = all;
+    others[i] = false;
+    b.world.set_absent(parts[i], true);
+    b.maintain(1100ms);
+    CHECK(found() == others);
+    b.world.set_absent(parts[i], false);
+    b.maintain(3s);
+    CHECK(found() == all);
+  }
+  CHECK(b.parts.gyroscope() == b.world.gyroscope());
+  CHECK(b.parts.accelerometer() == b.world.accelerometer());
+  CHECK(b.parts.magnetometer() == b.world.magnetometer());
+  CHECK(b.parts.floor() == b.world.floor());
+}
+
 TEST_CASE("DiWheelDrive: what is away costs next to nothing") {
   Bottom b;
   for (auto& each : b.models.floor) each.set_present(false);
@@ -392,6 +421,32 @@ TEST_CASE("PowerManagement: a gauge or a sensor that is away, and back") {
     CHECK(m.parts.absent() == 0);
     CHECK(m.parts.ring() == m.world.ring());
   }
+}
+
+TEST_CASE("PowerManagement: gauges and ring that are taken out of the world are missed on the board") {
+  Middle m;
+  m.start();
+  constexpr std::array<std::uint8_t, 1> voltage{0x08};
+  const auto gauge_at = [&](std::uint8_t bus) { return m.models.i2c(bus).transfer(0x55, voltage, {}).error; };
+  for (const bool absent : {true, false}) {
+    CAPTURE(absent);
+    m.world.set_absent(sim::Part::gauge, absent);
+    CHECK(gauge_at(middle::wiring::back_i2c) == (absent ? Error::no_answer : Error::none));
+    CHECK(gauge_at(middle::wiring::front_i2c) == (absent ? Error::no_answer : Error::none));
+    m.maintain(3s);
+    CHECK(m.parts.gauge().ok() == !absent);
+    CHECK(m.parts.batteries().ok() == !absent);
+    CHECK(m.parts.ring().ok());
+  }
+  CHECK(m.parts.gauge() == m.world.gauge());
+
+  m.world.set_absent(sim::Part::ring, true);
+  m.maintain(1200ms);
+  CHECK(m.parts.ring().error == Error::no_answer);
+  CHECK(m.parts.gauge().ok());
+  m.world.set_absent(sim::Part::ring, false);
+  m.maintain(3s);
+  CHECK(m.parts.ring() == m.world.ring());
 }
 
 TEST_CASE("PowerManagement: ring offsets are kept for others, the counts stay") {

@@ -197,6 +197,23 @@ TEST_CASE("A bit is both, names are what they name, flags are those that have na
   CHECK(different(seen_of(flags)) == std::vector<std::int64_t>{2, 128});
 }
 
+TEST_CASE(
+    "Where no range that the bits hold is stated, names count however far from the start value they are") {
+  const std::vector<protocol::NamedValue> names{{0, "off"}, {100, "on"}};
+  protocol::Field field = field_of(8, false, 0);
+  field.values = names;
+  CHECK(different(seen_of(field)) == std::vector<std::int64_t>{0, 100});
+  field.min = {300, 0}, field.max = {400, 0};  // beyond the bits
+  CHECK(different(seen_of(field)) == std::vector<std::int64_t>{0, 100});
+  field.values = {};
+  const auto numbers = seen_of(field);
+  CHECK(numbers.front() == 0);
+  CHECK(numbers.back() == 31);  // an eighth of what they hold
+  protocol::Field bit = field_of(1, false, 0);
+  bit.raw_min = 1;
+  CHECK(different(seen_of(bit)) == std::vector<std::int64_t>{1});
+}
+
 TEST_CASE("A name or a bit stays for 5 to 20 s, a number takes a new way every 2 to 8 s, without a corner") {
   using std::chrono::milliseconds;
   const std::vector<protocol::NamedValue> names{{0, "a"}, {1, "b"}, {2, "c"}, {3, "d"}};

@@ -1,11 +1,13 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cstdint>
 #include <cstdlib>
 #include <fcntl.h>
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <optional>
 #include <set>
 #include <span>
 #include <string>
@@ -568,6 +570,95 @@ TEST_CASE("Interference on a virtual bus comes as often as it is asked for, and 
   CHECK(number_behind(of_boards, indent) >= 20U);
 }
 
+TEST_CASE(
+    "Interference that was asked for is counted at the end also where it is rare, and else is not named") {
+  const Folder folder;
+  const OneMessage seldom{std::chrono::hours{1}};
+  const auto counted = [](const Watched& watched) {
+    return std::count(watched.reports.begin(), watched.reports.end(),
+                      std::string(18, ' ') + "0 error frames, 0 frames repeated");
+  };
+  for (const double rate : {0.0, 0.5, 1.0}) {
+    CAPTURE(rate);
+    sim::MessagesOptions messages;
+    messages.bus_errors = rate;
+    Watched of_messages{.turns = 0};
+    CHECK(sim::serve_messages(folder / "bus", seldom.catalogue, messages, of_messages.shell()).well());
+    CHECK(counted(of_messages) == (rate > 0 ? 1 : 0));
+    sim::AmiroOptions amiro;
+    amiro.bus_errors = rate;
+    Watched of_boards{.turns = 0};
+    CHECK(sim::serve_amiro(folder / "bus", amiro, of_boards.shell()).well());
+    CHECK(counted(of_boards) == (rate > 0 ? 1 : 0));
+  }
+}
+
+TEST_CASE("A virtual bus gets the bit rates that are asked for, and what says no to them is passed on") {
+  const Folder folder;
+  const OneMessage seldom{std::chrono::hours{1}};
+  Watched watched{.turns = 0};
+  sim::MessagesOptions messages;
+  messages.bit_rate = 250'000;
+  messages.data_bit_rate = 300'000;
+  sim::AmiroOptions amiro;
+  amiro.bit_rate = 250'000;
+  amiro.data_bit_rate = 300'000;
+  for (const Ending& ending :
+       {sim::serve_messages(folder / "bus", seldom.catalogue, messages, watched.shell()),
+        sim::serve_amiro(folder / "bus", amiro, watched.shell())}) {
+    REQUIRE(ending.failures.size() == 1);
+    CHECK(ending.failures[0].what == "no data of CAN FD runs at 300000 bit/s on a bus of 250000");
+    CHECK_FALSE(ending.misuse);
+  }
+  CHECK(watched.reports.empty());
+}
+
+TEST_CASE("A program on a virtual bus is told whose it is, its bit rates and the time of the day") {
+  using namespace std::chrono_literals;
+  const Folder folder;
+  const OneMessage often{5ms};
+  sim::MessagesOptions messages;
+  messages.bit_rate = 250'000;
+  messages.data_bit_rate = 1'000'000;
+  sim::AmiroOptions amiro;
+  amiro.bit_rate = 250'000;
+  amiro.data_bit_rate = 1'000'000;
+  amiro.messages = &often.catalogue;
+  for (const bool beside_boards : {false, true}) {
+    CAPTURE(beside_boards);
+    const auto begin = std::chrono::system_clock::now().time_since_epoch();
+    std::atomic<bool> over{false};
+    std::string name;
+    std::uint32_t bit_rate = 0, data_bit_rate = 0;
+    base::Time heard{};
+    std::thread program{[&] {
+      auto bus = transport::VirtualBus::open(folder / "bus");
+      for (; !bus && !over; bus = transport::VirtualBus::open(folder / "bus")) std::this_thread::yield();
+      if (bus) {
+        name = (*bus)->bus_name();
+        bit_rate = (*bus)->bit_rate();
+        data_bit_rate = (*bus)->data_bit_rate();
+        if (const auto received = (*bus)->receive(20s)) heard = received->time;
+      }
+      over = true;
+    }};
+    Watched watched;
+    sim::Shell shell = watched.shell();
+    shell.stop = [&over] { return over.load(); };
+    const Ending ending = beside_boards
+                              ? sim::serve_amiro(folder / "bus", amiro, shell)
+                              : sim::serve_messages(folder / "bus", often.catalogue, messages, shell);
+    over = true;
+    program.join();
+    CHECK(ending.well());
+    CHECK(name == (beside_boards ? "AMiRo" : "car"));
+    CHECK(bit_rate == 250'000U);
+    CHECK(data_bit_rate == 1'000'000U);
+    CHECK(heard.time_since_epoch() >= begin);
+    CHECK(heard.time_since_epoch() <= std::chrono::system_clock::now().time_since_epoch() + 1s);
+  }
+}
+
 TEST_CASE("Messages beside the boards of an AMiRo: which of them are not sent is said first") {
   const Folder folder;
   const OneMessage often{std::chrono::milliseconds{1}};
@@ -674,6 +765,62 @@ TEST_CASE("A fleet's radio reaches as far as it is asked to, and loses what it i
   CHECK(found(folder, options) == "scanning\nfound 1\n");
   options.radio_loss = 1;
   CHECK(found(folder, options) == "scanning\nfound 0\n");
+}
+
+TEST_CASE("What a central says while no program has its line open is counted") {
+  using namespace std::chrono_literals;
+  using Clock = std::chrono::steady_clock;
+  const Folder folder;
+  sim::MapperOptions options;
+  options.robots = 1;
+  options.speed = 1000;
+  const auto give_up = Clock::now() + 20s;
+  host::Descriptor line;
+  std::string heard;
+  bool connects = false;
+  std::optional<Clock::time_point> gone;
+  int turns = 0;  // since then
+  const auto say = [&line](std::string_view text) {
+    return ::write(line.get(), text.data(), text.size()) == static_cast<ssize_t>(text.size());
+  };
+  Watched watched;
+  sim::Shell shell = watched.shell();
+  shell.stop = [&] {
+    const auto now = Clock::now();
+    if (now > give_up) return true;
+    // The robot says who it is each second of its time.
+    if (gone) return ++turns > 20 && now > *gone + 50ms;
+    if (!line) {
+      line = host::Descriptor{
+          ::open((folder / "ocm/central").c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC)};
+      return !line || !say("start\nlist\n");
+    }
+    char text[256];
+    const ssize_t size = ::read(line.get(), text, sizeof text);
+    if (size > 0) heard.append(text, static_cast<std::size_t>(size));
+    if (!connects && heard.ends_with("end of list\n")) {
+      connects = heard.find(":AVR\n") != std::string::npos;
+      heard.clear();
+      return !say(connects ? "stop\nconn 0\n" : "list\n");
+    }
+    if (connects && heard.find("connected 0\n") != std::string::npos) {
+      line.reset();
+      gone = now;
+    }
+    return false;
+  };
+  CHECK(sim::serve_mappers(options, shell).well());
+  REQUIRE(gone.has_value());
+  const auto central =
+      std::find_if(watched.reports.begin(), watched.reports.end(),
+                   [](const std::string& report) { return report.starts_with("central    "); });
+  REQUIRE(central != watched.reports.end());
+  const std::size_t end = central->find(" bytes sent with no server connected");
+  REQUIRE(end != std::string::npos);
+  const std::size_t begin = central->rfind(' ', end - 1) + 1;
+  const auto bytes = std::stoull(central->substr(begin, end - begin));
+  CHECK(bytes >= 20U);          // who it is, once
+  CHECK(bytes <= 10'000'000U);  // no more than a few hundred thousand times
 }
 
 }  // namespace sim_serve_serve_test
