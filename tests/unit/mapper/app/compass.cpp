@@ -24,6 +24,9 @@ static_assert(verdict(0.15F, 0.0F) == Calibration::good && verdict(0.15F, 2.9F) 
 static_assert(verdict(0.15F, 3.1F) == Calibration::poor && verdict(0.15F, 7.9F) == Calibration::poor);
 static_assert(verdict(0.15F, 8.1F) == Calibration::disturbed);
 static_assert(verdict(0.049F, 0.0F) == Calibration::weak);
+// Each limit is within what it limits.
+static_assert(verdict(0.05F, 0.0F) == Calibration::good && verdict(0.15F, 3.0F) == Calibration::good &&
+              verdict(0.15F, 8.0F) == Calibration::poor);
 static_assert(judge(base::Error::not_sampled, 200) == Calibration::incomplete);
 static_assert(judge(base::Error::not_sampled, 0) == Calibration::silent);
 static_assert(judge(base::Error::no_answer, 200) == Calibration::silent);
@@ -51,6 +54,7 @@ TEST_CASE("mapper compass: whatever was found, the sentence can be written", "[m
   CHECK(said(2.1F, -2.1F, 2.1F, 10) ==
         Calibration{1, Calibration::weak, 2000, -2000, 2000, 180, 0});  // limits of the spec
   CHECK(said(-2.1F, 2.1F, -0.1F, -10) == Calibration{1, Calibration::weak, -2000, 2000, 0, 0, 0});
+  CHECK(said(nan, nan, nan, nan) == Calibration{1, Calibration::weak, 0, 0, 0, 0, 0});
   for (const float figure : {0.0F, nan, huge, -huge, std::numeric_limits<float>::infinity()}) {
     const CompassReport report{.verdict = Calibration::disturbed, .fit = {{figure, figure}, figure, figure}};
     CHECK(mapper::link::write(mapper::app::calibration(9999, report, Calibration::unused)).ok());

@@ -108,6 +108,28 @@ TEST_CASE("mapper: a new set point on the way is driven from where the robot is"
   CHECK(bench.robot.counters().set_points == 2);
 }
 
+TEST_CASE("mapper: of the way home it keeps 32 places, and counts those before them", "[mapper]") {
+  Bench bench{mapper::app::arduino_robot};
+  bench.confirm();
+  for (int i = 0; i < 32; ++i) REQUIRE(bench.drive("{U,90,10}\n"));
+  CHECK(bench.robot.counters().places_forgotten == 0);
+  for (int i = 0; i < 2; ++i) REQUIRE(bench.drive("{U,90,10}\n"));
+  CHECK(bench.robot.counters().places_forgotten == 2);
+}
+
+TEST_CASE("mapper: a control step in which no time has passed is rejected, and counted", "[mapper]") {
+  Bench bench;
+  bench.confirm();
+  bench.say("{U,0,100}\n");
+  bench.run_for(1s);
+  REQUIRE(bench.robot.busy());
+  const scheduling::Release again{.stream = mapper::app::stream(mapper::app::Task::pose_controller)};
+  bench.robot.finish(again);  // if it was not its time
+  const std::uint32_t before = bench.robot.counters().control_rejected;
+  bench.robot.finish(again);
+  CHECK(bench.robot.counters().control_rejected == before + 1);
+}
+
 TEST_CASE("mapper: of two set points in one packet the second counts, and the first is counted", "[mapper]") {
   Bench bench;
   bench.confirm();

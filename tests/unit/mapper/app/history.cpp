@@ -52,6 +52,17 @@ TEST_CASE("mapper history: places along a line are one stretch, a bend is a plac
   }
 }
 
+TEST_CASE("mapper history: the stretch before a place that was driven back to is not made longer",
+          "[mapper_history]") {
+  History<8> history;
+  for (const Point place : {Point{0, 0}, Point{1, 0}, Point{1, 1}}) history.leave(place);
+  history.drop_last();
+  history.leave({2, 0});
+  CHECK(history.size() == 3);
+  history.leave({3, 0});  // but the new one is
+  CHECK(taken(history) == std::vector<Point>{{3, 0}, {1, 0}, {0, 0}});
+}
+
 TEST_CASE("mapper history: a gentle bend in small steps is never straightened", "[mapper_history]") {
   // A quarter of a circle of 1 m in 100 steps: each step is as good as straight, all of them are not.
   History<32> history;

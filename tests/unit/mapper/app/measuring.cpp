@@ -71,6 +71,7 @@ TEST_CASE("mapper measuring: it goes on, and the last window counts", "[mapper_m
   for (int i = 0; i < 4; ++i) measurement.add(0.01F, Field{1, 0}, false);
   for (int i = 0; i < 4; ++i) measurement.add(0.05F, Field{0, 1}, false);
   CHECK(near(measurement.result().gyro_bias_rad_s, 0.05F));
+  CHECK(near(measurement.result().field.x, 0.0F));
   CHECK(near(measurement.result().field.y, 1.0F));
   SECTION("known, and no longer of this place, once it drove off") {
     measurement.drive_off();

@@ -22,6 +22,30 @@ static_assert(avr_robot.periods.estimator == 30ms && avr_robot.periods.movement 
 // [decided]
 static_assert(arduino_robot.motors.wheel_pi.pi.kp == 6e-4F && arduino_robot.motors.wheel_pi.pi.ki == 8e-3F &&
               arduino_robot.motors.wheel_pi.starting_effort == 0.3F);
+// So is what follows. [decided]
+constexpr auto& turns = mapper::app::detail::heading_pid;
+static_assert(turns.kp == 2.0F && turns.ki == 0.2F && turns.kd == 0.05F &&
+              turns.derivative_filter_s == 0.05F && turns.derivative_of_reference == 1.0F);
+constexpr auto& drives = mapper::app::detail::distance_pid;
+static_assert(drives.kp == 5.0F && drives.ki == 0.2F && drives.kd == 0.1F &&
+              drives.derivative_filter_s == 0.05F && drives.derivative_of_reference == 1.0F);
+static_assert(avr_robot.controller.heading.kp == turns.kp && avr_robot.controller.distance.kp == drives.kp);
+static_assert(avr_robot.controller.heading_tolerance_rad == motion::radians(2.0F) &&
+              arduino_robot.controller.heading_tolerance_rad == motion::radians(1.0F) &&
+              avr_robot.controller.distance_tolerance_m == 0.01F);
+static_assert(avr_robot.controller.distance.least == -1.0F && avr_robot.controller.distance.most == 1.0F);
+static_assert(arduino_robot.controller.distance.least == -0.8F &&
+              arduino_robot.controller.distance.most == 0.8F);
+static_assert(avr_robot.estimator.heading.gyro_threshold_rad_s == motion::radians(0.5F) &&
+              avr_robot.estimator.heading.gyro_variance_rad2_per_s == 2e-4F);
+static_assert(avr_robot.estimator.compass_variance_rad2 == 0.5F && avr_robot.estimator.compass_gate == 2.0F);
+static_assert(avr_robot.minimum_distance_cm == 15 && avr_robot.compass.calibration_effort == 0.5F &&
+              avr_robot.measuring.moving_rad_s == motion::radians(20.0F));
+static_assert(avr_robot.estimator.most_ticks == 66 && arduino_robot.estimator.most_ticks == 1250,
+              "what a wheel makes in a second");
+static_assert(avr_robot.handshake.axle_offset == 1 && avr_robot.handshake.tower_offset == 3);
+static_assert(arduino_robot.handshake.axle_offset == 4 && arduino_robot.handshake.tower_offset == 0,
+              "its gears move the axle forwards");  // [T2 §11.2.1]
 static_assert(avr_robot.periods.supervision == 100ms && avr_robot.periods.communication_apart == 20ms);
 static_assert(avr_robot.times.handshake == 1s && avr_robot.times.idle == 1s);
 static_assert(avr_robot.times.command_lives == 200ms && avr_robot.times.calibration_limit == 60s);

@@ -332,4 +332,37 @@ TEST_CASE("mapper: idle time, where the port has none: all that no job took", "[
   CHECK(bench.robot.idle() == 2s);  // in this port jobs take no time
 }
 
+TEST_CASE("mapper: idle time, where jobs take some: without it", "[mapper]") {
+  Bench bench;
+  int looks = 0;
+  bench.parts.on_ticks = [&] {  // by estimator and movement, once a job
+    ++looks;
+    bench.port.advance(bench.now += 1ms);
+  };
+  bench.run_for(2s);
+  CHECK(looks > 100);
+  CHECK(bench.robot.idle() == bench.robot.uptime() - looks * 1ms);
+}
+
+/// A port that measures its idle time itself.
+struct MeasuringPort : scheduling::Cooperative {
+  [[nodiscard]] base::Duration idle() const { return idle_time; }
+  base::Duration idle_time{5s};
+};
+
+TEST_CASE("mapper: idle time and uptime count from its start, not from the clock's", "[mapper]") {
+  IdealParts parts{mapper::app::avr_robot};
+  scheduling::Cooperative port{base::Time{5s}};
+  mapper::app::Robot<IdealParts, scheduling::Cooperative> robot{parts, port, mapper::app::avr_robot};
+  robot.start();
+  port.advance(base::Time{7s});
+  CHECK(robot.uptime() == 2s);
+  CHECK(robot.idle() == 2s);
+  MeasuringPort measuring;
+  mapper::app::Robot<IdealParts, MeasuringPort> measured{parts, measuring, mapper::app::avr_robot};
+  measured.start();
+  measuring.idle_time = 7s;
+  CHECK(measured.idle() == 2s);
+}
+
 }  // namespace mapper_app_robot_test

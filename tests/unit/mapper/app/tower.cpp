@@ -40,6 +40,7 @@ TEST_CASE("mapper tower: a place that no sentence holds is refused, not clipped"
                                   motion::Pose{0, nan, 0}, motion::Pose{0, 0, nan}})
     CHECK(mapper::app::update(pose, 0, {}).error == base::Error::out_of_range);
   CHECK(mapper::app::update({327, -327, 0}, 0, {})->x == 32700);
+  CHECK(mapper::app::update({327, -327, 0}, 0, {})->y == -32700);
 }
 
 /// Forward, left, backward, right.

@@ -91,6 +91,31 @@ TEST_CASE("packed: cut off at any byte, the next one is heard, also without a pa
   }
 }
 
+TEST_CASE("packed: an update that begins within a torn one is heard, and what was before it is stray") {
+  for (std::uint32_t cut = 1; cut <= 16; ++cut) {
+    CAPTURE(cut);
+    PackedReader reader;
+    Packet part = *pack({4, sample});
+    part.size = static_cast<std::uint8_t>(cut);
+    CHECK(feed(reader, part).empty());
+    CHECK(feed(reader, *pack({5, sample})) == std::vector{PackedUpdate{5, sample}});
+    CHECK(reader.faults() == PackedFaults{.corrupt = 1, .stray = cut});
+  }
+}
+
+TEST_CASE("packed: of a damaged update all bytes are stray, and so is each outside of any") {
+  PackedReader reader;
+  Packet damaged = *pack({5, sample});
+  damaged.data[5] = static_cast<std::uint8_t>(damaged.data[5] ^ 1U);
+  CHECK(feed(reader, damaged).empty());
+  CHECK(reader.faults() == PackedFaults{.corrupt = 1, .stray = 20});
+  CHECK_FALSE(reader.feed(0x80));
+  CHECK_FALSE(reader.feed(0xFF));
+  CHECK(reader.faults() == PackedFaults{.corrupt = 1, .stray = 22});
+  CHECK(feed(reader, *pack({6, sample})).size() == 1);
+  CHECK(reader.faults() == PackedFaults{.corrupt = 1, .stray = 22});
+}
+
 TEST_CASE("packed: what is lost, repeated or late is counted, and the number may wrap") {
   PackedReader reader;
   for (const int sequence : {200, 201, 201, 204, 202, 255, 0, 1, 1, 254})

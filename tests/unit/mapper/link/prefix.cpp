@@ -56,7 +56,9 @@ TEST_CASE("prefixes are taken out of the middle of sentences, with or without th
 
 TEST_CASE("a broken prefix is counted, and what follows belongs to no robot until the next") {
   for (const std::string_view bad : {"[]", "[x", "[0x", "[0]x", "[0]::", "[0]   :", "[256]:A:", "[999]:A:",
-                                     "[0000]", "[0]:a\n", "[0]:a{", "[0]:123456789012345678901"}) {
+                                     "[0000]", "[0]:a\n", "[0]:a{", "[0]:123456789012345678901",
+                                     // And with all behind it that a whole one has.
+                                     "[]:A:", "[0000]:A:", "[0]  ::"}) {
     INFO(bad);
     const Stripped s = strip("[1]:A:ab" + std::string{bad} + "cd[2]:B:ef");
     CHECK(s.text == "abef");
@@ -73,6 +75,9 @@ TEST_CASE("the longest prefixes: two blanks, the last index, a name of 20 charac
   CHECK(s.text == "xy");
   CHECK(s.sources == "0 255 ");
   CHECK(s.broken == 0);
+  const Stripped all_at_once = strip("[255]  :12345678901234567890:z");
+  CHECK(all_at_once.text == "z");
+  CHECK(all_at_once.broken == 0);
 }
 
 TEST_CASE("without a central there is one source; with one, none until the first prefix") {

@@ -79,6 +79,9 @@ static_assert(Sentence{Kind::set_point, 2, {90, 130}}.as<SetPoint>().value == Se
 static_assert(Sentence{Kind::set_point, 2, {90, 130}}.as<Update>().error == Error::bad_syntax);
 static_assert(Sentence{Kind::handshake, 2, {15, 20}}.as<Handshake>().value ==
               Handshake{.width = 15, .length = 20, .given = 2});
+// What a longer sentence of before has left behind the last integer is none of it.
+static_assert(Sentence{Kind::handshake, 2, {15, 20, 7}}.as<Handshake>().value ==
+              Handshake{.width = 15, .length = 20, .given = 2});
 
 // --- the spec, held against the code -----------------------------------------------------------------------
 

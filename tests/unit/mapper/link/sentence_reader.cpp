@@ -98,6 +98,7 @@ static_assert(faults("{U,32768,0,0,0,0,0,0,0}") == ReaderFaults{.out_of_range = 
 static_assert(faults("{U,-32769,0,0,0,0,0,0,0}") == ReaderFaults{.out_of_range = 1});
 static_assert(faults("{U,123456,0,0,0,0,0,0,0}") == ReaderFaults{.out_of_range = 1});
 static_assert(faults("{U,99999999999999999999}") == ReaderFaults{.out_of_range = 1});
+static_assert(faults("{U,123456\n") == ReaderFaults{.out_of_range = 1});  // known at its sixth digit
 static_assert(faults("{U,0,0,361,0,0,0,0,0}") == ReaderFaults{.out_of_range = 1});
 static_assert(faults("{U,0,0,0,91,0,0,0,0}") == ReaderFaults{.out_of_range = 1});
 static_assert(faults("{U,0,0,0,0,0,0,0,-1}") == ReaderFaults{.out_of_range = 1});
@@ -114,6 +115,20 @@ static_assert(only("\t\n!\n").kind == Kind::none);
 static_assert(only("\t!\n", Direction::to_robot).kind == Kind::none);
 static_assert(only("{U\t!}").kind == Kind::none);
 static_assert(only("\t{S,IDL}!\n").kind == Kind::idle);
+
+constexpr Reader after(std::string_view text) {
+  Reader reader;
+  for (const char c : text) (void)reader.feed(c);
+  return reader;
+}
+// One tab, one answer, and none of the integers of before in it.
+static_assert(after("\t!!").heard() == 1 && after("\t!!").stray() == 1);
+static_assert(after("{U,1,2,3,4,5,6,7,8}").sentence().count == 8);
+static_assert(after("{U,1,2,3,4,5,6,7,8}\t!").sentence().kind == Kind::pong);
+static_assert(after("{U,1,2,3,4,5,6,7,8}\t!").sentence().count == 0);
+// What was heard is gone with the next brace.
+static_assert(after("{S,IDL}").sentence().kind == Kind::idle);
+static_assert(after("{S,IDL}{").sentence().kind == Kind::none);
 
 static_assert(sizeof(Reader) <= 92);
 

@@ -1,5 +1,6 @@
 #include "ocm/mapper/link/whole_update.hpp"
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -52,6 +53,28 @@ static_assert(number("99999,12") == not_taken && number("-99999,1") == not_taken
 static_assert(number("999999,1") == not_taken && number("-999999,") == not_taken);
 static_assert(number("9999999,") == not_taken && number("-9999999") == not_taken);
 static_assert(number("99999999") == not_taken);
+
+// --- an update ---------------------------------------------------------------------------------------------
+
+/// How many characters are taken of an update that is followed by blanks, `size` characters in all.
+constexpr std::size_t taken(std::string_view update, std::size_t size = 60) {
+  std::array<char, 60> text{};
+  text.fill(' ');
+  update.copy(text.data(), update.size());
+  std::array<std::int16_t, 8> integers{};
+  return detail::whole_update({text.data(), size}, integers);
+}
+// Each field at both ends of what it can be, and beyond them.
+constexpr std::string_view greatest = "{U,9999,9999,360,90,255,255,255,255}";
+constexpr std::string_view least = "{U,-9999,-9999,-360,0,0,0,0,0}";
+static_assert(taken(greatest) == greatest.size() && taken(least) == least.size());
+static_assert(taken("{U,0,0,361,0,0,0,0,0}") == 0 && taken("{U,0,0,-361,0,0,0,0,0}") == 0);
+static_assert(taken("{U,0,0,0,91,0,0,0,0}") == 0 && taken("{U,0,0,0,-1,0,0,0,0}") == 0);
+static_assert(taken("{U,0,0,0,0,256,0,0,0}") == 0 && taken("{U,0,0,0,0,0,0,0,256}") == 0);
+static_assert(taken("{U,0,0,0,0,0,0,0,0,") == 0 && taken("{U,0,0,0,0,0,0,0}") == 0);
+static_assert(taken("{C,0,0,0,0,0,0,0,0}") == 0 && taken("{U}0,0,0,0,0,0,0,0}") == 0);
+// Three characters, seven numbers of five and a comma, and a word of eight: less is not looked at.
+static_assert(taken(least, 53) == least.size() && taken(least, 52) == 0);
 
 // --- blocks ------------------------------------------------------------------------------------------------
 

@@ -201,8 +201,12 @@ TEST_CASE("central client: no central at the line") {
   REQUIRE(bench.count(Event::failed) == 1);
   CHECK(bench.words() == "the central does not answer");
   CHECK(bench.client.counters().timeouts == 3);
-  bench.advance(3s);
+  bench.advance(2800ms);  // the next request has three attempts of its own
+  CHECK(bench.count(Event::failed) == 1);
+  CHECK(bench.client.counters().timeouts == 5);
+  bench.advance(200ms);
   CHECK(bench.count(Event::failed) == 2);
+  CHECK(bench.client.counters().timeouts == 6);
   CHECK(bench.client.idle());
 }
 
@@ -264,6 +268,9 @@ TEST_CASE("central client: the queue is bounded") {
   CHECK(client.say(0, "a"));
   CHECK(client.say(0, "b"));
   CHECK_FALSE(client.say(0, "c"));
+  CentralClient usual;
+  for (int n = 0; n < 64; ++n) CHECK(usual.say(0, "a"));
+  CHECK_FALSE(usual.say(0, "a"));
 }
 
 TEST_CASE(
@@ -422,6 +429,38 @@ TEST_CASE("central client: a busy central is asked again until the time for a li
   hand.hear("error: still connecting to 1\n");
   CHECK(hand.event() == "failed 0: the central is still busy with another link");
   CHECK(hand.client.idle());
+}
+
+TEST_CASE("central client: the first request of all waits as long for a busy central") {
+  CentralClient client{{.connect = 600ms}};
+  CHECK(client.connect(0));
+  Time now{1s};
+  client.expire(now);
+  CHECK(client.take() == "*\nstop\n");
+  client.feed("found 0\n", now);
+  for (int times = 0; times < 2; ++times) {
+    CHECK(client.take() == "conn 0\n");
+    client.feed("error: still connecting to 1\n", now);
+    now += 300ms;
+    client.expire(now);
+  }
+  CHECK(client.take() == "conn 0\n");
+  CHECK_FALSE(client.next_event().has_value());
+  client.feed("error: still connecting to 1\n", now);
+  const auto event = client.next_event();
+  REQUIRE(event.has_value());
+  CHECK(event->words == "the central is still busy with another link");
+  CHECK(client.idle());
+}
+
+TEST_CASE("central client: the last index that a central may give is taken") {
+  Hand hand;
+  hand.client.scan(0ms);
+  hand.wait(0ms);
+  hand.hear("found 1\n255:C0000000000A:AVR\nend of list\n");
+  CHECK(hand.event() == "listed 1");
+  REQUIRE(hand.client.peers().size() == 1);
+  CHECK(hand.client.peers()[0].index == 255);
 }
 
 TEST_CASE("central client: a link that does not come in its time is ended, one that does not end is named") {

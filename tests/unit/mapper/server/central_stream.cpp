@@ -118,6 +118,21 @@ TEST_CASE("central stream: a line that a packet cuts short is dropped, and count
   CHECK(parted("connec[0]:A:{S,IDL}\nted 0\n") == "[0]:A:{S,IDL}\nted 0\n|");
 }
 
+TEST_CASE("central stream: before the first packet, and behind a line of its own, only the central speaks") {
+  CHECK(parted("0:C0000000000A:AVR\n") == "|" + said(Kind::listed, 0, "AVR"));
+  // What is no line of it, or too long for one, is no robot's: it is dropped, and counted.
+  CentralStream stream;
+  std::string robots;
+  int lines = 0;
+  const std::string text = "scanning\nwhat is this\n" + std::string(81, 'x') + "\n\nfound 1\n";
+  for (const char c : text)
+    stream.feed(
+        c, [&](char robot) { robots += robot; }, [&](const CentralLine&) { ++lines; });
+  CHECK(robots.empty());
+  CHECK(lines == 2);
+  CHECK(stream.cut() == 2);
+}
+
 TEST_CASE("central stream: any bytes, any number: nothing is held for ever") {
   ocm::test::Random random{1};
   for (int run = 0; run < 200; ++run) {

@@ -360,4 +360,23 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("dialect: a line of a list has 96 characters at most") {
+  for (const std::size_t name : {81U, 82U}) {  // behind 15 others
+    const std::string listed = "0:C0000000000A:" + std::string(name, 'N') + "\n";
+    Translator thesis{Dialect::thesis};
+    thesis.from_dongle(listed, begin);
+    (void)thesis.take_for_client();
+    thesis.from_client("list\n", begin);
+    CHECK(thesis.take_for_client() == (name == 81 ? listed : "") + "end of list\n");
+  }
+}
+
+TEST_CASE("dialect: an index that no robot has is handed on, and no link comes") {
+  talk(Dialect::thesis, {
+                            {0, 'c', "conn 256\n", "conn 256\n", "connecting 256\n"},
+                            {1, 'd', "[255]:B:", "", "[255]:B:"},
+                            {9'000, 't', "", "", "error: no link to 256\n"},
+                        });
+}
+
 }  // namespace mapper_server_dialect_test

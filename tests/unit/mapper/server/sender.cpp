@@ -285,6 +285,10 @@ TEST_CASE("sender: what the place where a robot stands proves of its leg, at the
       {{0, 60}, place(30, 0, 16), said, false, {-16, 30}},
       {{0, 60}, place(30, 10, 16), said, false, {-34, 32}},
       {{0, 60}, place(30, 12, 16), said, false, {-16, 30}},
+      {{0, 60}, place(23, 13, 16), said, false, {-35, 39}},  // 19.4 degrees aside
+      {{0, 60}, place(28, 12, 16), said, false, {-16, 32}},  // 20.6
+      {{0, 60}, place(50, 3, 16), said, false, {-33, 10}},   // 10.4 cm left
+      {{0, 60}, place(51, 3, 16), said, false, {-16, 9}},    // 9.5
       {{0, 30}, place(20, 14, 0), said, false, {0, 10}},
       // Backwards the same, the other way round.
       {{0, -50}, place(-42, 0, 0), reached},
@@ -298,12 +302,18 @@ TEST_CASE("sender: what the place where a robot stands proves of its leg, at the
       {{5, 0}, place(0, 0, 2), said, false, {3, 0}},
       {{4, 0}, place(0, 0, 2), reached},
       {{4, 0}, place(0, 0, 1), said, false, {3, 0}},
+      {{5, 0}, place(4, 0, 3), reached},  // 4 cm aside is there, if half of the turn is done
+      {{4, 0}, place(4, 0, 2), said, false, {2, 0}},
       // Short ways: half of one is not near enough, and what a robot itself takes for there is.
       {{0, 2}, place(0, 0, 0), said, false, {0, 2}},
       {{0, 2}, place(1, 0, 0), reached},
       {{0, 2}, place(4, 0, 0), reached},
       {{0, 3}, place(1, 0, 0), said, false, {0, 2}},
       {{0, 3}, place(2, 0, 0), reached},
+      {{0, 2}, place(2, 3, 0), reached},  // heard, and 3 cm away
+      {{0, 2}, place(1, 3, 0), said, false, {0, 1}},
+      {{0, 2}, place(6, 0, 0), said, false, {0, -4}},
+      {{0, 3}, place(2, 4, 0), ended, true},  // no shorter one is said to be blocked
   };
   for (std::size_t i = 0; i < std::size(cases); ++i) {
     const Case& each = cases[i];
@@ -354,6 +364,28 @@ TEST_CASE("sender: after three corrections that lead elsewhere it is given up, a
   bench.stands(0, 0, 180);
   CHECK(bench.sender.progress() == Progress::said);
   CHECK(bench.said.back() == SetPoint{40, 0});
+}
+
+TEST_CASE("sender: each leg of a way has three corrections of its own") {
+  Bench bench;
+  bench.stands(0, 0, 0);
+  bench.go(0, 120);
+  CHECK(bench.said.back() == SetPoint{0, 60});
+  const auto stands = [&bench](int x, int heading) {
+    bench.pass(9s);
+    bench.stands(x, 0, heading);
+  };
+  stands(5, 40);
+  CHECK(bench.said.back() == SetPoint{-40, 58});
+  stands(10, 40);
+  CHECK(bench.said.back() == SetPoint{-40, 55});
+  stands(15, 40);
+  CHECK(bench.said.back() == SetPoint{-40, 53});
+  stands(68, 0);  // the end of the first leg
+  CHECK(bench.said.back() == SetPoint{0, 52});
+  stands(75, 40);
+  CHECK(bench.sender.progress() == Progress::said);
+  CHECK(bench.said.back() == SetPoint{-40, 45});
 }
 
 TEST_CASE("sender: when a stop is said again, and when a robot that was not heard of is stopped") {
