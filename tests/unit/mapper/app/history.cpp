@@ -40,6 +40,15 @@ TEST_CASE("mapper history: the same place twice is one place", "[mapper_history]
   CHECK(taken(history) == std::vector<Point>{{1, 1}});
 }
 
+TEST_CASE("mapper history: what is 2 cm away is another place", "[mapper_history]") {
+  History<8> history;
+  history.leave({0, 0});
+  history.leave({0.019F, 0});
+  CHECK(history.size() == 1);
+  history.leave({0.02F, 0});
+  CHECK(history.size() == 2);
+}
+
 TEST_CASE("mapper history: places along a line are one stretch, a bend is a place", "[mapper_history]") {
   History<8> history;
   for (int i = 0; i <= 20; ++i) history.leave({0.1F * static_cast<float>(i), 0});

@@ -141,6 +141,8 @@ TEST_CASE("mapper locator: without gyro or compass it goes on, and counts", "[ma
   CHECK(near(locator.estimate().pose.heading_rad, 20 * motion::two_pi * 0.033F / 198 / 0.15F, 1e-4F));
   CHECK(locator.estimate().rejected.gyro == 10);
   CHECK_FALSE(locator.failed());  // it was measured: it is no fault of the start
+  locator.begin_at_zero();
+  CHECK(locator.estimate().rejected.gyro == 10);  // since the start, whoever confirms
 }
 
 TEST_CASE("mapper locator: parts that never answered are a fault, until they do", "[mapper_locator]") {
@@ -177,6 +179,30 @@ TEST_CASE("mapper locator: a turn finds the robot's own field, and the heading s
   CHECK(near(found.fit.offset.y, own.y, 0.002F));
   CHECK(near(locator.offset().x, own.x, 0.002F));
   CHECK(locator.estimate().pose.heading_rad == before);
+}
+
+TEST_CASE("mapper locator: after a turn the compass goes on from the heading that the robot has",
+          "[mapper_locator]") {
+  constexpr Field own{0.05F, -0.03F};
+  RobotModel model = mapper::app::avr_robot;
+  model.estimator.compass_rule = motion::CompassRule::always;
+  model.estimator.compass_variance_rad2 = 1e-9F;
+  model.estimator.compass_gate = 0.0F;
+  Locator locator{model};
+  rest(locator, 0.0F, 0.4F, own);
+  locator.begin_at_zero();
+  locator.begin_calibration();
+  float heading = 0.4F;
+  for (int i = 0; i < 400 && !locator.turned_around(); ++i) {
+    heading += 0.9F * dt;
+    locator.step({{}, 0.9F, field_at(heading, 0.7F, own)}, {Movement::rotating, false, true}, dt);
+  }
+  REQUIRE(locator.end_calibration().taken);
+  const float before = locator.estimate().pose.heading_rad;
+  for (const float turned : {0.0F, 0.5F}) {
+    for (int i = 0; i < 5; ++i) locator.step({{}, 0.0F, field_at(heading + turned, 0.7F, own)}, standing, dt);
+    CHECK(near_angle(locator.estimate().pose.heading_rad, before + turned, 0.05F));
+  }
 }
 
 TEST_CASE("mapper locator: a turn that was not all around keeps the offset that was", "[mapper_locator]") {

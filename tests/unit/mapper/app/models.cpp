@@ -43,6 +43,12 @@ static_assert(avr_robot.minimum_distance_cm == 15 && avr_robot.compass.calibrati
               avr_robot.measuring.moving_rad_s == motion::radians(20.0F));
 static_assert(avr_robot.estimator.most_ticks == 66 && arduino_robot.estimator.most_ticks == 1250,
               "what a wheel makes in a second");
+static_assert(avr_robot.estimator.drive.wheel_radius_m == 0.033F &&
+              avr_robot.estimator.drive.wheelbase_m == 0.15F);
+static_assert(arduino_robot.estimator.drive.wheel_radius_m == 0.028F &&
+              arduino_robot.estimator.drive.wheelbase_m == 0.15F);
+static_assert(arduino_robot.motors.wheel_pi.pi.least == 0.0F &&
+              arduino_robot.motors.wheel_pi.pi.most == 1.0F);
 static_assert(avr_robot.handshake.axle_offset == 1 && avr_robot.handshake.tower_offset == 3);
 static_assert(arduino_robot.handshake.axle_offset == 4 && arduino_robot.handshake.tower_offset == 0,
               "its gears move the axle forwards");  // [T2 §11.2.1]

@@ -284,6 +284,24 @@ TEST_CASE("mapper: nothing of a robot at rest is left out; ticks that no wheel m
   CHECK(bench.robot.pose() == motion::Pose{});
 }
 
+TEST_CASE("mapper: where no sentence holds its place it says none, and counts that", "[mapper]") {
+  RobotModel model = mapper::app::avr_robot;
+  model.estimator.drive.wheel_radius_m = 33.0F;  // a tick is a metre
+  Bench bench{model};
+  bench.confirm();
+  for (int i = 0; i < 6; ++i) {
+    bench.parts.left_ticks += 60;
+    bench.parts.right_ticks += 60;
+    bench.run_for(30ms);
+  }
+  CHECK(bench.robot.pose().x_m > 327.0F);
+  bench.heard();
+  const std::uint32_t before = bench.robot.counters().out_of_range;
+  bench.run_for(1s);
+  CHECK(bench.heard("{U") == 0);
+  CHECK(bench.robot.counters().out_of_range == before + 5);
+}
+
 TEST_CASE("mapper: commands that movement does not come to take are counted", "[mapper]") {
   Bench bench;
   bench.confirm();
@@ -354,7 +372,12 @@ TEST_CASE("mapper: idle time and uptime count from its start, not from the clock
   IdealParts parts{mapper::app::avr_robot};
   scheduling::Cooperative port{base::Time{5s}};
   mapper::app::Robot<IdealParts, scheduling::Cooperative> robot{parts, port, mapper::app::avr_robot};
+  parts.efforts = {1.0F, 1.0F};
+  parts.lights = both;
   robot.start();
+  CHECK(parts.efforts == motion::Efforts{});  // at once
+  CHECK(parts.lights == green);
+  CHECK(parts.servo_deg == 0);
   port.advance(base::Time{7s});
   CHECK(robot.uptime() == 2s);
   CHECK(robot.idle() == 2s);

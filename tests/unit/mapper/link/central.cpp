@@ -240,6 +240,16 @@ TEST_CASE("central: a reset ends a scan, too") {
   CHECK(bench.central.counters().stray_reports == 1);
 }
 
+TEST_CASE("central: a link that is asked for ends a scan, too") {
+  Bench<> bench;
+  (void)bench.type("start\n");
+  bench.found(a, "AVR");
+  CHECK(bench.type("conn 0\n") == "<no scan><connect a>connecting 0\n");
+  CHECK_FALSE(bench.central.scanning());
+  CHECK(bench.type("*stop\n") == "command\nfound 1\n");
+  CHECK(bench.type("start\n") == "<scan>scanning\n");
+}
+
 TEST_CASE("central: a full queue drops whole ends of lines, counted, and takes the next line again") {
   Bench<8, 3, 2> bench;
   bench.one_link();

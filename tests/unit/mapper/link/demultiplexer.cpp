@@ -162,6 +162,7 @@ TEST_CASE(
   feed_all(text(*pack({200, {}})));
   CHECK(ear.packed().heard() == 3);
   CHECK(ear.packed().faults() == PackedFaults{});
+  CHECK(ear.quality().per_mille() == 1000);  // what was begun on the old link is not the new one's
 }
 
 TEST_CASE("an update that is lost lowers the quality when its number is missed") {

@@ -150,6 +150,21 @@ TEST_CASE("calibrator: void after a handshake, a lost link or a stop") {
   CHECK(bench.said == std::vector{0, 1});
 }
 
+TEST_CASE("calibrator: begun again it knows nothing of before") {
+  Bench bench;
+  bench.begin();
+  bench.hear(knows(0));
+  bench.hear(good(1));
+  REQUIRE(bench.phase() == Phase::done);
+  REQUIRE(bench.calibrator.times_said() == 2);
+  bench.begin();
+  CHECK(bench.phase() == Phase::asking);
+  CHECK(bench.calibrator.times_said() == 1);
+  CHECK(bench.calibrator.result() == Calibration{});
+  bench.hear(good(1));
+  CHECK(bench.said == std::vector{0, 1, 0, 2});
+}
+
 /// At which milliseconds behind `from` something is said.
 std::vector<int> times_of(Calibrator& calibrator, Time from, int until_ms) {
   std::vector<int> times;

@@ -526,6 +526,109 @@ TEST_CASE("central client: words that cannot be said are named as such, and the 
   CHECK_FALSE(hand.client.peers()[0].linked);
 }
 
+TEST_CASE("central client: answers and reports of another robot end no request") {
+  Hand hand;
+  hand.hear("connected 1\n");  // nothing is asked for
+  CHECK(hand.event() == "connected 1");
+  CHECK(hand.client.peers()[1].linked);
+  hand.client.connect(0);
+  hand.wait(0ms);
+  CHECK(hand.client.take() == "conn 0\n");
+  const auto strays = hand.client.counters().strays;
+  hand.hear("connecting 1\ndata 1\n");
+  CHECK(hand.client.counters().strays == strays + 2);
+  hand.hear("connecting 0\nlost 1\nconnected 1\n");
+  CHECK(hand.event() == "lost 1");
+  CHECK(hand.event() == "connected 1");
+  CHECK_FALSE(hand.client.idle());
+  hand.hear("connected 0\n");
+  CHECK(hand.event() == "connected 0");
+  CHECK(hand.client.idle());
+  hand.client.drop(0);
+  hand.wait(0ms);
+  CHECK(hand.client.take() == "*");
+  hand.hear("command\n");
+  CHECK(hand.client.take() == "drop 0\n");
+  hand.hear("closing 1\n");
+  CHECK(hand.client.counters().strays == strays + 3);
+  hand.hear("closing 0\nclosed 1\n");
+  CHECK(hand.event() == "lost 1");
+  CHECK_FALSE(hand.client.idle());
+  hand.hear("closed 0\n");
+  CHECK(hand.event() == "lost 0");
+  CHECK(hand.client.idle());
+  CHECK_FALSE(hand.client.peers()[0].linked);
+}
+
+TEST_CASE(
+    "central client: a link that is lost while it comes is none, and one that is there needs no other") {
+  Hand hand;
+  hand.client.connect(0);
+  hand.wait(0ms);
+  hand.hear("connecting 0\nlost 0\n");
+  CHECK(hand.event() == "lost 0");
+  CHECK(hand.event() == "failed 0: no link to AVR");
+  CHECK(hand.client.idle());
+  (void)hand.client.take();
+  hand.client.connect(0);
+  hand.wait(0ms);
+  CHECK(hand.client.take() == "*");
+  hand.hear("command\n");
+  CHECK(hand.client.take() == "conn 0\n");
+  hand.hear("data 0\n");
+  CHECK(hand.event() == "connected 0");
+  CHECK(hand.client.peers()[0].linked);
+  hand.client.say(0, "{}\n");  // it is in data mode with that robot
+  hand.wait(0ms);
+  CHECK(hand.client.take() == "{}\n");
+  CHECK(hand.event() == "said 0");
+  // One that is lost without a word, and does not come again.
+  const auto connect = [&hand] {
+    hand.client.connect(1);
+    hand.wait(0ms);
+    CHECK(hand.client.take() == "*");
+    hand.hear("command\n");
+    CHECK(hand.client.take() == "conn 1\n");
+  };
+  connect();
+  hand.hear("connecting 1\nconnected 1\n");
+  CHECK(hand.event() == "connected 1");
+  connect();
+  hand.hear("connecting 1\nerror: no link to 1\n");
+  CHECK(hand.event() == "failed 1: the central refuses B: no link to 1");
+  CHECK_FALSE(hand.client.peers()[1].linked);
+  CHECK(hand.client.peers()[0].linked);
+}
+
+TEST_CASE("central client: a request that a reset cuts short is begun again at once") {
+  Hand hand;
+  hand.client.connect(0);
+  hand.wait(0ms);
+  CHECK(hand.client.take() == "conn 0\n");
+  hand.hear("reset\n");
+  CHECK(hand.client.take() == "*\nstop\n");
+  hand.hear("found 0\n");
+  CHECK(hand.client.take() == "conn 0\n");
+  CHECK(hand.client.counters().timeouts == 0);
+}
+
+TEST_CASE("central client: of a list that is not whole nothing is in the next") {
+  Hand hand;
+  hand.client.scan(0ms);
+  hand.wait(0ms);
+  CHECK(hand.client.take() == "stop\nlist\n");
+  hand.hear("found 2\n1:C0000000000C:C\nend of list\n");
+  CHECK(hand.client.counters().timeouts == 1);
+  CHECK(hand.client.take() == "*\nstop\n");
+  hand.hear("found 2\n");
+  CHECK(hand.client.take() == "stop\nlist\n");
+  hand.hear("found 2\n0:C0000000000C:C\n1:C0000000000D:D\nend of list\n");
+  CHECK(hand.event() == "listed 2");
+  REQUIRE(hand.client.peers().size() == 2);
+  CHECK(hand.client.peers()[0].name == "C");
+  CHECK(hand.client.peers()[1].name == "D");
+}
+
 TEST_CASE("central client: a new list keeps the link of the same robot at the same index, and no other") {
   Hand hand;
   hand.client.connect(0);

@@ -360,6 +360,16 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("dialect: a prefix ends what looked like an answer, and one that is broken is not put in again") {
+  Translator translator{Dialect::at};
+  translator.from_dongle("{U,1E[3]:A:x", begin);
+  CHECK(translator.take_for_client() == "[0]:?:{U,1E[3]:A:x");
+  translator.from_client("switch 2\n", begin);
+  CHECK(translator.take_for_dongle() == "AT+SWITCH=2.");
+  translator.from_dongle("[0xAOK.B", begin);
+  CHECK(translator.take_for_client() == "[0xAdata 2\nB");
+}
+
 TEST_CASE("dialect: a line of a list has 96 characters at most") {
   for (const std::size_t name : {81U, 82U}) {  // behind 15 others
     const std::string listed = "0:C0000000000A:" + std::string(name, 'N') + "\n";

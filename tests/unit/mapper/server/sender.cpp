@@ -303,6 +303,7 @@ TEST_CASE("sender: what the place where a robot stands proves of its leg, at the
       {{4, 0}, place(0, 0, 2), reached},
       {{4, 0}, place(0, 0, 1), said, false, {3, 0}},
       {{5, 0}, place(4, 0, 3), reached},  // 4 cm aside is there, if half of the turn is done
+      {{6, 0}, place(4, 0, 3), reached},
       {{4, 0}, place(4, 0, 2), said, false, {2, 0}},
       // Short ways: half of one is not near enough, and what a robot itself takes for there is.
       {{0, 2}, place(0, 0, 0), said, false, {0, 2}},
