@@ -55,6 +55,11 @@ class Interfaces(Case):
         self.assertIn("Target", out.splitlines()[1])
         self.assertIn("unknown", out.splitlines()[3])
 
+    def test_json_lines_are_read_by_the_catalogue_of_their_interface(self):
+        """Else the identifier 100 of can1 and its topic would contradict each other."""
+        events, _ = self.run_tool(*self.specs, "decode", "--json", stdin=LOG)
+        self.assertEqual(self.run_tool(*self.specs, "decode", "--json", stdin=events)[0], events)
+
     def test_conditions_on_a_field_of_several_interfaces(self):
         """Each has its own: Engine.Speed of can0 is 513, of can1 40, in the frames that come."""
         engines = [("can0", "Engine"), ("can1", "Engine")]
