@@ -142,7 +142,7 @@ TEST_CASE("mapper locator: without gyro or compass it goes on, and counts", "[ma
   CHECK(locator.estimate().rejected.gyro == 10);
   CHECK_FALSE(locator.failed());  // it was measured: it is no fault of the start
   locator.begin_at_zero();
-  CHECK(locator.estimate().rejected.gyro == 10);  // since the start, whoever confirms
+  CHECK(locator.estimate().rejected.gyro == 10);  // since the start, whatever confirms it
 }
 
 TEST_CASE("mapper locator: parts that never answered are a fault, until they do", "[mapper_locator]") {
