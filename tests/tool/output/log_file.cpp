@@ -20,7 +20,6 @@
 #include <string>
 #include <string_view>
 #include <sys/resource.h>
-#include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
 #include <sys/time.h>
@@ -34,6 +33,7 @@
 
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/messages.hpp"
+#include "tool/written_pieces.hpp"
 #include "unit/host/host_testing.hpp"
 
 namespace tool_output_log_file_test {
@@ -471,11 +471,10 @@ TEST_CASE("log file: what was there stays where the disk has no room for the new
 
 /// In which pieces a log of so many lines goes to the standard output, which keeps them apart.
 std::vector<std::size_t> pieces(int lines, bool without_signals) {
-  std::array<int, 2> ends{};
-  REQUIRE(::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()) == 0);
+  const test::WrittenPieces pieces;
   std::fflush(nullptr);
   const int kept = ::dup(STDOUT_FILENO);
-  ::dup2(ends[0], STDOUT_FILENO);
+  ::dup2(pieces.descriptor(), STDOUT_FILENO);
   bool whole = false;
   if (auto made =
           LogFile::create("-", *cli::logs::find_format("candump"), amiro::catalogue, Existing::refuse)) {
@@ -488,15 +487,7 @@ std::vector<std::size_t> pieces(int lines, bool without_signals) {
   ::dup2(kept, STDOUT_FILENO);
   ::close(kept);
   CHECK(whole);
-  std::vector<std::size_t> sizes;
-  std::string piece(static_cast<std::size_t>(lines) * one_line.size() + 1, '\0');
-  for (;;) {
-    const ssize_t size = ::recv(ends[1], piece.data(), piece.size(), MSG_DONTWAIT);
-    if (size <= 0) break;
-    sizes.push_back(static_cast<std::size_t>(size));
-  }
-  for (const int end : ends) ::close(end);
-  return sizes;
+  return pieces.sizes(static_cast<std::size_t>(lines) * one_line.size() + 1);
 }
 
 TEST_CASE("log file: a thread that no signal reaches writes to a pipe page by page, others all at once") {

@@ -8,11 +8,12 @@
 #include <cstddef>
 #include <fcntl.h>
 #include <string>
-#include <sys/socket.h>
 #include <unistd.h>
 #include <vector>
 
 #include <catch2/catch.hpp>
+
+#include "tool/written_pieces.hpp"
 
 namespace tool_shared_interrupt_test {
 
@@ -81,20 +82,11 @@ TEST_CASE("interrupt: where a broken pipe kills nothing, no signal is blocked fo
 
 /// In which pieces a text is written.
 std::vector<std::size_t> pieces(const std::string& text, cli::Signals signals) {
-  std::array<int, 2> ends{};
-  REQUIRE(::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()) == 0);
-  const cli::Written written = cli::write_all(ends[0], text, signals);
+  const test::WrittenPieces pieces;
+  const cli::Written written = cli::write_all(pieces.descriptor(), text, signals);
   CHECK(written.bytes == text.size());
   CHECK(written.error == 0);
-  std::vector<std::size_t> sizes;
-  std::string piece(text.size() + 1, '\0');
-  for (;;) {
-    const ssize_t size = ::recv(ends[1], piece.data(), piece.size(), MSG_DONTWAIT);
-    if (size <= 0) break;
-    sizes.push_back(static_cast<std::size_t>(size));
-  }
-  for (const int end : ends) ::close(end);
-  return sizes;
+  return pieces.sizes(text.size() + 1);
 }
 
 TEST_CASE("interrupt: where signals are blocked a text is written page by page, and else at once") {
