@@ -93,11 +93,13 @@ std::string explain(const Study& study, std::size_t row) {
   if (result.interference > 0) {
     const auto as_urgent = [&it](const Row& other) { return &other != &it && other.rank == it.rank; };
     const bool equals = !bus && std::any_of(study.rows.begin(), study.rows.end(), as_urgent);
+    // In a FIFO the most urgent one waits for others, too.
+    const bool only_errors = study.with_errors && row == 0 && result.largest_share == 0;
     text += fmt::format(", {} for {}", time_text(result.interference),
-                        study.with_errors && row == 0 ? "errors"
-                        : study.with_errors           ? "more urgent ones and errors"
-                        : equals                      ? "ones as urgent or more"
-                                                      : "more urgent ones");
+                        only_errors         ? "errors"
+                        : study.with_errors ? "more urgent ones and errors"
+                        : equals            ? "ones as urgent or more"
+                                            : "more urgent ones");
     if (result.largest < study.rows.size())
       text +=
           fmt::format(" ({} of that {})", time_text(result.largest_share), study.rows[result.largest].name);
