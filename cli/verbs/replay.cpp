@@ -180,10 +180,14 @@ void summarise(const replay::Player& player, bool dry_run) {
   remark(text);
 }
 
+std::string name_of_log(const ReplayOptions& options) {
+  return options.file == "-" ? "the standard input" : options.file;
+}
+
 /// Of a log with frames none was sent: what was chosen is not in it.
 void expect_any(const replay::Player& player, const ReplayOptions& options) {
   const auto& played = player.played();
-  const std::string log = options.file == "-" ? "the standard input" : options.file;
+  const std::string log = name_of_log(options);
   if (played.sent != 0 || interrupted() != 0) return;
   if (played.not_chosen != 0)
     fail({fmt::format("replay: no frame of {} was chosen", log),
@@ -308,8 +312,7 @@ void stand_in(Session& session, const ReplayOptions& options, int& exit_code) {
     log.complain();
   }
   if (robot.samples() == 0)
-    fail({fmt::format("{} has no sample of {}: nothing could be answered",
-                      options.file == "-" ? "the standard input" : options.file,
+    fail({fmt::format("{} has no sample of {}: nothing could be answered", name_of_log(options),
                       options.topics.empty() ? "a sensor" : "these topics"),
           options.topics.empty() ? "is --spec that of the robot that was recorded?"
                                  : "name others, or none: then all that it has is answered"});
